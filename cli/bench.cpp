@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "cli/answer.h"
@@ -10,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/base/json.h"
 #include "model/base/spelling.h"
+#include "model/base/standard_streams.h"
 #include "study/bench/bench_gpu.h"
 #include "study/bench/bench_report.h"
 #include "study/bench/benches.h"
@@ -24,6 +26,16 @@ struct Options {
   int threads = 0;
   BenchLength length;
 };
+
+// Nobody waits for a row that nobody reads.
+std::function<void(benchmark::State&)> unless_lost(std::function<void(benchmark::State&)> run) {
+  return [run = std::move(run)](benchmark::State& state) {
+    if (output_is_lost())
+      state.SkipWithError(fmt::format("{}nobody reads", kSkipped).c_str());
+    else
+      run(state);
+  };
+}
 
 int bench(const Options& options) {
   const std::vector<Bench> list = benches(options.length, options.threads);
@@ -73,7 +85,7 @@ int bench(const Options& options) {
   };
   if (chosen.empty()) return end(0);
   for (const Bench* entry : chosen)
-    benchmark::RegisterBenchmark(entry->name.c_str(), entry->run)
+    benchmark::RegisterBenchmark(entry->name.c_str(), unless_lost(entry->run))
         ->Iterations(1)
         ->Repetitions(entry->gpu    ? 1
                       : entry->once ? std::min(options.length.repeats, 3)

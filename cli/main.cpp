@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cstdio>
 #include <new>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,10 @@
 #include "cli/command.h"
 #include "cli/help.h"
 #include "cli/learn.h"
-#include "model/base/output.h"
+#include "hw/program/command_line.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
+#include "model/base/standard_streams.h"
 #include "model/base/text.h"
 
 namespace cuboct {
@@ -78,8 +80,7 @@ int tell(const InputError& error, bool as_json, int exit_code) {
   return exit_code;
 }
 
-int main_of(int argc, char** argv) {
-  survive_file_limit();
+int main_of(std::vector<std::string> words, bool as_json) {
   int exit_code = 0;
   CLI::App app("cuboct: particle matter and the hardware that computes it, the same bits.", "cuboct");
   app.set_version_flag(
@@ -105,8 +106,6 @@ int main_of(int argc, char** argv) {
   add_picture(app, exit_code);
   add_report(app, exit_code);
   set_help(app);
-  std::vector<std::string> words = words_of(argc, argv);
-  const bool as_json = std::ranges::count(words, "--json") > 0;
   // What an exception says in its own words: a message, perhaps of several lines.
   const auto plain = [&](const std::string& text, int code) {
     if (as_json) return tell(InputError(text), true, code);
@@ -118,7 +117,10 @@ int main_of(int argc, char** argv) {
     std::ranges::reverse(words);  // as CLI11 takes them
     app.parse(std::move(words));
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    std::ostringstream text;
+    const int code = app.exit(help, text);
+    fmt::print("{}", text.str());
+    return code;
   } catch (const CLI::Error& error) {
     return plain(error.what(), 2);
   } catch (const InputError& error) {
@@ -129,6 +131,7 @@ int main_of(int argc, char** argv) {
     return plain(fmt::format("out of memory: {} are free now", in_bytes(static_cast<double>(free_memory()))),
                  1);
   } catch (const std::exception& error) {
+    if (const auto refusal = path_error(error)) return tell(*refusal, as_json, 2);
     return plain(error.what(), 1);
   }
   return exit_code;
@@ -137,4 +140,10 @@ int main_of(int argc, char** argv) {
 }  // namespace
 }  // namespace cuboct
 
-int main(int argc, char** argv) { return cuboct::main_of(argc, argv); }
+int main(int argc, char** argv) {
+  using namespace cuboct;
+  const std::vector<std::string> words = words_of(argc, argv);
+  const bool as_json = std::ranges::count(words, "--json") > 0;
+  return with_standard_streams([&] { return main_of(words, as_json); },
+                               [&](const std::string& text) { tell(InputError(text), as_json, 1); });
+}

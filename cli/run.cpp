@@ -3,12 +3,9 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "cli/answer.h"
@@ -101,17 +98,6 @@ void check_size(const Options& options, const Loaded& loaded, uint64_t steps, ui
   size.ranks = engines.ranks;
   check_lists(loaded.scene, size, options.frames_given);
   check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), options.out);
-}
-
-// Prints the summary, and says what could not be printed.
-std::string print(const Items& summary, bool json) {
-  try {
-    fmt::print("{}", json ? summary.json() : summary.text());
-    if (std::fflush(stdout) != 0) throw std::system_error(errno, std::generic_category());
-  } catch (const std::system_error& error) {
-    return fmt::format("cannot print the summary: {}", error.code().message());
-  }
-  return {};
 }
 
 // What --verbose says: where the engine runs, what it computes, and why what the arch file leaves to cuboct
@@ -219,11 +205,8 @@ Ended run_once(const Options& given) {
                       : trace.stop     ? "stopped"
                       : unfinished     ? "interrupted"
                                        : "finished";
-  if (recorder)
-    std::signal(SIGPIPE, SIG_IGN);  // a reader that went away costs the summary's lines, not the files
-  if (!options.in_stages || !options.answer.json)
-    if (const std::string unprinted = print(summary, options.answer.json); trouble.empty())
-      trouble = unprinted;
+  if (!options.in_stages || !options.answer.json) options.answer.close(summary);
+  std::fflush(stdout);
   if (recorder) {
     recorder->finish(trace, summary, state);
     if (!recorder->trouble().empty()) trouble = recorder->trouble();

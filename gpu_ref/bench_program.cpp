@@ -6,11 +6,13 @@
 #include <fstream>
 
 #include "gpu_ref/bench_report.h"
-#include "gpu_ref/command.h"
+#include "hw/program/command_line.h"
 #include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
+#include "model/base/text.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -96,9 +98,9 @@ bool run_rows(const Request& request, const std::vector<BenchRow>& rows, const B
       if (!result->energy && setting.no_energy.empty())
         fmt::print("# {}: no energy: {}\n", row.name, result->no_energy);
     } catch (const InputError& e) {  // too large for the devices, say
-      leave_out(row, e.what(), "skipped");
+      leave_out(row, parts_of(e).message, "skipped");
     } catch (const std::exception& e) {
-      leave_out(row, e.what(), "failed");
+      leave_out(row, line_text(e.what()), "failed");
       failed = true;
     }
     std::fflush(stdout);
@@ -168,7 +170,7 @@ int run_bench(int argc, char** argv, const BenchMachine& machine) {
                  "Also write a line of JSON for the machine and for each row to this file");
   app.add_option("--lines", request.lines, "Also write 'name value unit' lines to this file");
   app.add_option("--machine", request.machine, "Write to this file what the devices are, and end");
-  return run_command(app, argc, argv, [&] {
+  return run_command_line(app, argc, argv, [&] {
     if (options.engine.block % 32 != 0 || options.engine.block < 32 || options.engine.block > 256)
       throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", options.engine.block));
     return run(request, machine);

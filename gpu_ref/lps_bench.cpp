@@ -11,9 +11,9 @@
 #include <optional>
 
 #include "gpu_ref/bench.h"
-#include "gpu_ref/command.h"
 #include "gpu_ref/lps_compare.h"
 #include "gpu_ref/messages.h"
+#include "hw/program/command_line.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/real/rounds_engine.h"
@@ -200,7 +200,7 @@ int run_lps_bench(int argc, char** argv) {
   Request request;
   CLI::App app{"Runs a linear peridynamic solid on a GPU, and measures it", "cuboct-gpu lps"};
   add_options(app, request);
-  return run_command(app, argc, argv, [&] { return run(request); });
+  return run_command_line(app, argc, argv, [&] { return run(request); });
 }
 
 }  // namespace cuboct::gpu

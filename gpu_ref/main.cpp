@@ -6,8 +6,11 @@
 #include "gpu_ref/multiscale.h"
 #include "gpu_ref/program.h"
 #include "gpu_ref/samples_bench.h"
+#include "model/base/standard_streams.h"
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   if (argc > 1 && argv[1] == std::string_view("bench")) return cuboct::gpu::run_bench(argc - 1, argv + 1);
   if (argc > 1 && argv[1] == std::string_view("samples"))
     return cuboct::gpu::run_samples_bench(argc - 1, argv + 1);
@@ -15,4 +18,10 @@ int main(int argc, char** argv) {
     return cuboct::gpu::run_multiscale(argc - 1, argv + 1);
   if (argc > 1 && argv[1] == std::string_view("lps")) return cuboct::gpu::run_lps_bench(argc - 1, argv + 1);
   return cuboct::gpu::run_gpu_program(argc, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return cuboct::with_standard_streams([&] { return run(argc, argv); });
 }

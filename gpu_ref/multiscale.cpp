@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 
-#include "gpu_ref/command.h"
 #include "gpu_ref/messages.h"
 #include "gpu_ref/sample_relaxer.h"
+#include "hw/program/command_line.h"
 #include "hw/program/error_file.h"
 #include "model/base/interrupt.h"
 #include "model/base/resources.h"
@@ -133,7 +133,7 @@ int run_multiscale(int argc, char** argv) {
   app.add_option("--status", request.before, "Words before the line of progress on a terminal");
   app.add_option("--error", request.error, "File for what went wrong, in place of standard error")
       ->type_name("FILE");
-  return run_command(app, argc, argv, [&] { return run_and_tell(request); });
+  return run_command_line(app, argc, argv, [&] { return run_and_tell(request); });
 }
 
 }  // namespace cuboct::gpu

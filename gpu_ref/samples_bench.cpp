@@ -9,9 +9,9 @@
 #include <random>
 
 #include "gpu_ref/bench.h"
-#include "gpu_ref/command.h"
 #include "gpu_ref/messages.h"
 #include "gpu_ref/samples.h"
+#include "hw/program/command_line.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/bond_order/tersoff_parameters.h"
@@ -188,7 +188,7 @@ int run_samples_bench(int argc, char** argv) {
       ->check(CLI::Range(1e-9, 1.0))
       ->capture_default_str();
   app.add_flag("--no-energy", request.no_energy, "Measure no energies");
-  return run_command(app, argc, argv, [&] { return run(request); });
+  return run_command_line(app, argc, argv, [&] { return run(request); });
 }
 
 }  // namespace cuboct::gpu

@@ -14,6 +14,7 @@
 #include "model/base/error_parts.h"
 #include "model/base/process.h"
 #include "model/base/spelling.h"
+#include "model/base/standard_streams.h"
 #include "model/scene/config.h"
 #include "model/trace/trace_head.h"
 #include "python/explore.h"
@@ -206,6 +207,7 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 PYBIND11_MODULE(_cuboct, module) {
+  fill_standard_descriptors();  // the interpreter leaves those closed that were
   py::register_exception_translator(translate);
   module.attr("version") = program_version();
 

@@ -8,6 +8,7 @@
 
 #include "emu/board/session.h"
 #include "hw/program/program.h"
+#include "model/base/standard_streams.h"
 
 namespace cuboct::emu {
 namespace {
@@ -53,5 +54,5 @@ class BoardProgram : public EngineProgram {
 
 int main(int argc, char** argv) {
   cuboct::emu::BoardProgram program;
-  return cuboct::run_program(argc, argv, program);
+  return cuboct::with_standard_streams([&] { return cuboct::run_program(argc, argv, program); });
 }

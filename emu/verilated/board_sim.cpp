@@ -17,9 +17,10 @@
 
 #include "emu/verilated/library.h"
 #include "emu/verilated/serial_line.h"
+#include "hw/program/command_line.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
-#include "model/base/text.h"
+#include "model/base/standard_streams.h"
 
 namespace cuboct::emu {
 namespace {
@@ -188,21 +189,12 @@ int main_of(int argc, char** argv) {
       ->check(CLI::Range(-10.0, 10.0));
   app.add_option("--build-dir", request.build_directory,
                  "Where compiled boards are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
-  try {
-    app.parse(argc, argv);
-    return simulate(request);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  } catch (const InputError& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 2;
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "cuboct-board-sim: {}\n", block_text(e.what()));
-    return 1;
-  }
+  return run_command_line(app, argc, argv, [&] { return simulate(request); });
 }
 
 }  // namespace
 }  // namespace cuboct::emu
 
-int main(int argc, char** argv) { return cuboct::emu::main_of(argc, argv); }
+int main(int argc, char** argv) {
+  return cuboct::with_standard_streams([&] { return cuboct::emu::main_of(argc, argv); });
+}

@@ -5,6 +5,7 @@
 
 #include "emu/machine/program.h"
 #include "emu/verilated/verilated_node.h"
+#include "model/base/standard_streams.h"
 
 int sc_main(int argc, char** argv) {
   using namespace cuboct::emu;
@@ -26,5 +27,5 @@ int sc_main(int argc, char** argv) {
 // Instead of SystemC's own main, which would print a banner first.
 int main(int argc, char** argv) {
   setenv("SYSTEMC_DISABLE_COPYRIGHT_MESSAGE", "1", 1);
-  return sc_core::sc_elab_and_sim(argc, argv);
+  return cuboct::with_standard_streams([&] { return sc_core::sc_elab_and_sim(argc, argv); });
 }

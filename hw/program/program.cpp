@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <map>
 
+#include "hw/program/command_line.h"
 #include "hw/program/error_file.h"
 #include "hw/program/frame_files.h"
 #include "hw/setup.h"
 #include "model/analysis/meter.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/steps.h"
@@ -98,7 +100,8 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
                 writer->add(state);
             } catch (const InputError& error) {
               if (trouble.empty())
-                trouble = fmt::format("{}; frames are left out from step {} on", error.what(), state.step);
+                trouble = fmt::format("{}; frames are left out from step {} on", parts_of(error).message,
+                                      state.step);
             }
           },
           frame);
@@ -205,7 +208,6 @@ void EngineProgram::print_end(const Plan& plan, const Trace& trace) {
 }
 
 int run_program(int argc, char** argv, EngineProgram& program) {
-  survive_file_limit();
   Parsed parsed;
   CLI::App app{program.description, program.name};
   add_options(app, program, parsed);
@@ -215,11 +217,7 @@ int run_program(int argc, char** argv, EngineProgram& program) {
   auto* frames_file =
       app.add_option("--frames-file", parsed.frames_file, "The same from a file, one step per line")
           ->excludes(frames);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
-  }
+  if (const std::optional<int> ended = parse_command_line(app, argc, argv)) return *ended;
   parsed.frames_given = frames->count() > 0 || frames_file->count() > 0;
   parsed.options.hashes_given = app.get_option("--hash-every")->count() > 0;
   const auto told = [&](const InputError& error, const std::string& text, int code) {
@@ -235,6 +233,7 @@ int run_program(int argc, char** argv, EngineProgram& program) {
   } catch (const InputError& e) {
     return program.leads() ? told(e, e.told(), 2) : 2;
   } catch (const std::exception& e) {
+    if (const auto refusal = path_error(e)) return told(*refusal, refusal->told(), 2);
     const std::string text = fmt::format("{}: {}", program.name, block_text(e.what()));
     return told(InputError(text), text, 1);
   }

@@ -14,7 +14,8 @@ void run_gnuplot(const Scratch& scratch, const std::string& script) {
   write_text(scratch.path("script.gp"), script);
   int code = 0;
   try {
-    code = Process("gnuplot", {"-d", scratch.path("script.gp")}).wait();
+    // Scripts are UTF-8, which gnuplot only takes without complaint where the locale is too.
+    code = Process("gnuplot", {"-d", scratch.path("script.gp")}, false, {}, {"LC_ALL=C.UTF-8"}).wait();
   } catch (const InputError& error) {
     throw InputError(error.what(), "install gnuplot-nox");
   }

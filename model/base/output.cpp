@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -47,8 +46,6 @@ int reserve(const std::string& path, uint64_t from, uint64_t bytes) {
   close(file);
   return error;
 }
-
-void survive_file_limit() { std::signal(SIGXFSZ, SIG_IGN); }
 
 void check_writable(const std::string& path) {
   std::error_code none;

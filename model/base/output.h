@@ -11,10 +11,6 @@
 
 namespace cuboct {
 
-// From now on a write beyond the limit of file sizes fails, as one on a full disk does. By default it ends
-// the program.
-void survive_file_limit();
-
 // Throws InputError ("cannot write PATH: REASON") where a file of this name could not be written now. Leaves
 // nothing.
 void check_writable(const std::string& path);

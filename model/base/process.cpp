@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
@@ -75,6 +76,10 @@ int start(const Child& child, pid_t& pid) {
         sigaction(signal, &action, nullptr);
       }
     }
+    // Ignored in ours (model/base/standard_streams.h), which other programs do not expect.
+    struct sigaction usual {};
+    usual.sa_handler = SIG_DFL;
+    sigaction(SIGPIPE, &usual, nullptr);
     sigprocmask(SIG_SETMASK, &before, nullptr);
     become(child, error);
   }
@@ -87,17 +92,22 @@ int start(const Child& child, pid_t& pid) {
 }  // namespace
 
 Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool apart,
-                 const Streams& streams)
+                 const Streams& streams, const std::vector<std::string>& variables)
     : pid_(-1), passed_on_(apart ? SIGUSR1 : SIGTERM) {
   std::vector<char*> argv{const_cast<char*>(program.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  std::vector<std::string> variables;
+  std::vector<std::string> given = variables;
+  given.push_back(fmt::format("{}{}", kStarter, getpid()));
+  const auto is_given = [&](std::string_view variable) {
+    const std::string_view name = variable.substr(0, variable.find('=') + 1);
+    return name == kStarter ||
+           std::ranges::any_of(variables, [&](const std::string& one) { return one.starts_with(name); });
+  };
   for (char** variable = environ; *variable; ++variable)
-    if (!std::string_view(*variable).starts_with(kStarter)) variables.emplace_back(*variable);
-  variables.push_back(fmt::format("{}{}", kStarter, getpid()));
+    if (!is_given(*variable)) given.emplace_back(*variable);
   std::vector<char*> environment;
-  for (std::string& variable : variables) environment.push_back(variable.data());
+  for (std::string& variable : given) environment.push_back(variable.data());
   environment.push_back(nullptr);
   const Child child{program.c_str(),     argv.data(), environment.data(), apart, streams.out.c_str(),
                     streams.err.c_str(), getpid()};
@@ -174,16 +184,20 @@ std::string beside(const std::string& program) {
 
 bool in_path(const std::string& program) {
   const char* path = std::getenv("PATH");
-  std::istringstream directories(path ? path : "");
+  std::istringstream directories(path ? path : "/bin:/usr/bin");  // as execvp
   for (std::string directory; std::getline(directories, directory, ':');)
     if (access(directory.append("/").append(program).c_str(), X_OK) == 0) return true;
   return false;
 }
 
 Scratch::Scratch() {
-  std::string name = (std::filesystem::temp_directory_path() / "cuboct-XXXXXX").string();
+  const char* asked = std::getenv("TMPDIR");
+  const bool own = asked == nullptr || *asked == 0;
+  std::string name = (std::filesystem::path(own ? "/tmp" : asked) / "cuboct-XXXXXX").string();
   if (!mkdtemp(name.data()))
-    throw InputError(fmt::format("cannot make the directory {}: {}", name, std::strerror(errno)));
+    throw InputError(fmt::format("cannot make the directory {}: {}", name, std::strerror(errno)),
+                     own ? "TMPDIR names another place for files that go with the program"
+                         : "TMPDIR says so: it has to name a directory in which you may write");
   directory_ = name;
 }
 

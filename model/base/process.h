@@ -21,9 +21,10 @@ class Process {
   // dies with the thread that starts it, however that ends. By default its stderr is ours, its stdout is
   // dropped (results travel in files). Throws InputError where it cannot be started. `apart`: in a process
   // group of its own, where Ctrl-C does not reach it, and an interrupt of ours is passed on as SIGUSR1:
-  // mpirun ends its processes on the one and tells them the other.
+  // mpirun ends its processes on the one and tells them the other. `variables`, as NAME=VALUE, join those of
+  // our environment, or replace them.
   Process(const std::string& program, const std::vector<std::string>& arguments, bool apart = false,
-          const Streams& streams = {});
+          const Streams& streams = {}, const std::vector<std::string>& variables = {});
   ~Process();  // ends it where nobody waited
   Process(Process&& other) noexcept;
   Process& operator=(Process&&) = delete;

@@ -492,8 +492,8 @@ TEST_F(NothingLost, AReaderThatGoesAwayCostsTheSummaryAlone) {
       fmt::format("cd {}; {} run {} --quiet --steps 5 --out {} 2>{} | :; exit ${{PIPESTATUS[0]}}",
                   CUBOCT_SOURCE_DIR, bench_.path("bin/cuboct"), kScene, dir(), bench_.path("err"));
   const int status = std::system(("bash -c '" + command + "'").c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 2);
-  EXPECT_EQ(contents(bench_.path("err")), "cannot print the summary: Broken pipe\n");
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(contents(bench_.path("err")), "");
   EXPECT_EQ(read_trace(dir() + "/trace.h5").steps(), 5u);
   EXPECT_EQ(state_of(dir()), "finished");
 }

@@ -19,3 +19,10 @@ if out=$(bash "$1/tests/layering/columns.sh" "$copy"); then
   echo "a line of 121 columns was not seen"; exit 1
 fi
 grep -q 'rtl/lib/cuboct_ram.sv:[0-9]*: 121 columns' <<<"$out"
+
+# And that of programs a main without its standard streams.
+echo 'int main() { return 0; }' > "$copy/cli/other.cpp"
+if out=$(bash "$1/tests/layering/mains.sh" "$copy"); then
+  echo "a main without its standard streams was not seen"; exit 1
+fi
+grep -q 'cli/other.cpp: main does not return' <<<"$out"

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What is wrong is told as an exception, with its place."""
 import os
+import shlex
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -130,6 +133,13 @@ class Faults(unittest.TestCase):
             self.assertEqual(caught.exception.advice, error.advice)
             ends.append((error.step, last))
         self.assertEqual(*ends)
+
+
+class Descriptors(unittest.TestCase):
+    def test_closed_ones_are_no_file_of_ours(self):
+        code = "import os, cuboct; assert all(os.path.samestat(os.fstat(k), os.stat('/dev/null')) for k in range(3))"
+        command = f"exec {shlex.quote(sys.executable)} -c {shlex.quote(code)} <&- >&- 2>&-"
+        self.assertEqual(subprocess.run(["bash", "-c", command], check=False).returncode, 0)
 
 
 main()

@@ -3,7 +3,7 @@
 
 #include <sys/resource.h>
 
-#include "model/base/output.h"
+#include <csignal>
 
 namespace cuboct {
 
@@ -11,7 +11,7 @@ namespace cuboct {
 class FileLimit {
  public:
   explicit FileLimit(rlim_t bytes) {
-    survive_file_limit();
+    std::signal(SIGXFSZ, SIG_IGN);  // as programs have it (model/base/standard_streams.h)
     getrlimit(RLIMIT_FSIZE, &before_);
     const rlimit limit{bytes, before_.rlim_max};
     setrlimit(RLIMIT_FSIZE, &limit);
