@@ -7,11 +7,12 @@
 
 namespace cuboct::study {
 
-Database::Database(const std::string& path, bool writable) : path_(path) {
+Database::Database(const std::string& path, bool writable, const std::string& name)
+    : name_(name.empty() ? path : name) {
   check_is_file(path);
   const int flags = writable ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &handle_, flags | SQLITE_OPEN_FULLMUTEX, nullptr) != SQLITE_OK) {
-    const std::string text = fmt::format("cannot open {}: {}", path, sqlite3_errmsg(handle_));
+    const std::string text = fmt::format("cannot open {}: {}", name_, sqlite3_errmsg(handle_));
     sqlite3_close(handle_);
     throw InputError(text);
   }
@@ -20,7 +21,20 @@ Database::Database(const std::string& path, bool writable) : path_(path) {
   sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
 }
 
-void Database::fail() const { throw InputError(fmt::format("{}: {}", path_, sqlite3_errmsg(handle_))); }
+void Database::fail() const {
+  constexpr const char* kHint =
+      "'cuboct explore' makes such a file: remove this one and begin again, or take another";
+  switch (sqlite3_errcode(handle_)) {
+    case SQLITE_NOTADB:
+      throw InputError(fmt::format("{} holds no results of a study", name_), kHint);
+    case SQLITE_CORRUPT:
+      throw InputError(fmt::format("{} is damaged", name_), kHint);
+    case SQLITE_ERROR:  // of a statement of ours: tables or columns are others
+      throw InputError(fmt::format("{} holds no results of a study as cuboct keeps them", name_), kHint);
+    default:  // a full disk, say
+      throw InputError(fmt::format("{}: {}", name_, sqlite3_errmsg(handle_)));
+  }
+}
 
 void Database::run(const std::string& sql) {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();

@@ -13,8 +13,9 @@ namespace cuboct::study {
 
 class Database {
  public:
-  // Throws InputError where the file cannot be opened. `writable`: it is made where it is not there.
-  Database(const std::string& path, bool writable);
+  // Throws InputError where the file cannot be opened. `writable`: it is made where it is not there. `name`:
+  // for errors, where the file is a copy.
+  Database(const std::string& path, bool writable, const std::string& name = {});
   ~Database() { sqlite3_close(handle_); }
   Database(const Database&) = delete;
   Database& operator=(const Database&) = delete;
@@ -24,7 +25,7 @@ class Database {
   [[noreturn]] void fail() const;
 
  private:
-  std::string path_;
+  std::string name_;
   sqlite3* handle_ = nullptr;
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <set>
@@ -15,6 +16,7 @@
 #include <thread>
 
 #include "model/base/error_parts.h"
+#include "model/base/process.h"
 #include "model/base/text.h"
 #include "study/sqlite.h"
 #include "study/truth_bytes.h"
@@ -148,10 +150,34 @@ void check_truth(const Truth& truth, const Study& study) {
     throw InputError("a truth in the results is not of this study", "remove the results and begin again");
 }
 
+// A copy of another's results, rows of its log included: SQLite leaves files beside a database that it reads,
+// and needs a directory where it may.
+class Copy {
+ public:
+  Copy(const std::string& from, const std::string& own) {
+    namespace fs = std::filesystem;
+    std::error_code error;
+    if (fs::equivalent(from, own, error)) throw InputError(fmt::format("{} is this study's own", from));
+    const int lock = open((from + ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+    const bool free = lock < 0 || flock(lock, LOCK_SH | LOCK_NB) == 0;
+    if (free) fs::copy_file(from, path(), error);
+    const std::string log = from + "-wal";
+    if (std::error_code none; free && !error && fs::exists(log, none))
+      fs::copy_file(log, path() + "-wal", error);
+    if (lock >= 0) close(lock);
+    if (!free) throw InputError(fmt::format("another process is at work on {}", from));
+    if (error) throw InputError(fmt::format("cannot copy {}: {}", from, error.message()));
+  }
+  std::string path() const { return scratch_.path("results.db"); }
+
+ private:
+  Scratch scratch_;
+};
+
 }  // namespace
 
 struct Store::Impl {
-  Impl(const std::string& path, const Study& study) : study(study), database(path, true) {}
+  Impl(const std::string& path, const Study& study) : study(study), path(path), database(path, true) {}
 
   void check();
   void read_figures(Outcome& outcome, const std::string& numbers) const;
@@ -166,6 +192,7 @@ struct Store::Impl {
   }
 
   const Study& study;
+  const std::string path;
   const std::string here = this_machine();
   Database database;
   int lock = -1;
@@ -310,7 +337,8 @@ bool Store::has_speed(const Settings& settings) const { return speed(settings).h
 int Store::add(const std::string& path) {
   if (access(path.c_str(), R_OK) != 0) throw InputError(fmt::format("cannot read {}", path));
   const std::lock_guard guard(impl_->mutex);
-  const Database other(path, false);
+  const Copy copied(path, impl_->path);
+  const Database other(copied.path(), false, path);
   std::string hash, machine;
   {
     Query row(other, "SELECT name, value FROM meta");

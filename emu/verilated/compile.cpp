@@ -34,20 +34,24 @@ bool succeeds(const std::string& command) {
   return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-// What the tool says of itself.
+// What the tool says of itself. `tool`: words of a shell.
 std::string version_of(const std::string& tool, const std::string& package) {
-  if (!succeeds("command -v " + shell_word(tool) + " > /dev/null 2>&1"))
-    throw InputError(fmt::format(
-        "{} is missing: the emitted hardware is compiled with it (Debian package {})", tool, package));
+  constexpr int kNotFound = 127;  // of a shell
   std::string text;
-  if (FILE* pipe = popen((shell_word(tool) + " --version 2>&1").c_str(), "r"); pipe != nullptr) {
+  int status = -1;
+  if (FILE* pipe = popen((tool + " --version 2>&1").c_str(), "r"); pipe != nullptr) {
     std::array<char, 256> part;
     while (std::fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
-    if (pclose(pipe) == 0) return text;
+    status = pclose(pipe);
+    if (status == 0) return text;
   }
+  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound)
+    throw InputError(fmt::format(
+        "{} is missing: the emitted hardware is compiled with it (Debian package {})", tool, package));
   throw InputError(fmt::format("'{} --version' fails: the tool does not work", tool));
 }
 
+// As make and CMake have it, CXX may hold words before the compiler ("ccache g++") and behind it.
 std::string compiler() {
   const char* cxx = std::getenv("CXX");
   return cxx != nullptr && *cxx != 0 ? cxx : "c++";

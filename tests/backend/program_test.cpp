@@ -48,10 +48,11 @@ class Programs : public testing::Test {
     fs::permissions(dir_ / "bin" / name, fs::perms::owner_all);
   }
   // cuboct-rtl on a good scene, with that path.
-  Ended rtl() const {
+  Ended rtl(const std::string& variables = "") const {
     fs::create_directories(dir_ / "bin");
-    return run(fmt::format("env -u CXX PATH='{}' '{}' '{}' --steps 1 --out t.h5 --build-dir made",
-                           (dir_ / "bin").string(), CUBOCT_RTL, CUBOCT_SOURCE_DIR "/scenes/lj_block.toml"));
+    return run(fmt::format("env -u CXX {} PATH='{}' '{}' '{}' --steps 1 --out t.h5 --build-dir made",
+                           variables, (dir_ / "bin").string(), CUBOCT_RTL,
+                           CUBOCT_SOURCE_DIR "/scenes/lj_block.toml"));
   }
   // Files in the build directory, by extension.
   std::vector<std::string> made(const std::string& extension) const {
@@ -154,6 +155,22 @@ TEST_F(Programs, WithoutACompilerOneLineNamesItsPackage) {
   const Ended e = rtl();
   EXPECT_EQ(e.code, 2);
   EXPECT_EQ(e.err, "c++ is missing: the emitted hardware is compiled with it (Debian package g++)\n");
+}
+
+// CXX may hold more than one word, as in make: the tool before the compiler gets the rest.
+TEST_F(Programs, TheCompilerMayHaveAToolBeforeIt) {
+  tool("verilator", std::string(kVerilator) + "echo /usr");
+  tool("ccache", "echo \"$*\" >> '" + (dir_ / "asked").string() + "'");
+  const Ended e = rtl("CXX='ccache g++'");
+  EXPECT_EQ(e.err.find("is missing"), std::string::npos) << e.err;
+  std::ifstream asked(dir_ / "asked");
+  std::string first, second;
+  std::getline(asked, first);
+  std::getline(asked, second);
+  EXPECT_EQ(first, "g++ --version");
+  EXPECT_TRUE(second.starts_with("g++ -std=c++17 ")) << second;
+  EXPECT_EQ(rtl("CXX='nowhere g++'").err,
+            "nowhere g++ is missing: the emitted hardware is compiled with it (Debian package g++)\n");
 }
 
 TEST_F(Programs, AToolThatDoesNotRunIsNamed) {

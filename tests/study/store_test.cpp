@@ -6,9 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <map>
 
 #include "model/base/error.h"
+#include "model/base/output.h"
 #include "study/measure_errors.h"
 #include "study/runner.h"
 #include "study/truth_bytes.h"
@@ -208,6 +212,62 @@ TEST(Store, TakesInRowsOfAnotherMachine) {
   const Study other = read_study(files.study(std::string("[change.run]\nsteps = 80\n") + kStudy));
   Store another(files.path("another.db"), other);
   EXPECT_THROW(another.add(elsewhere), InputError);
+}
+
+TEST(Store, SaysOfAFileThatItIsNone) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  Store store(files.path("results.db"), study);
+  const auto refusal = [&](const std::string& text) {
+    std::ofstream(files.path("other.db"), std::ios::binary) << text;
+    try {
+      store.add(files.path("other.db"));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  const std::string hint =
+      "\n  hint: 'cuboct explore' makes such a file: remove this one and begin again, or take another";
+  const std::string name = files.path("other.db");
+  EXPECT_EQ(refusal(std::string(10000, 'x')), name + " holds no results of a study" + hint);
+  EXPECT_EQ(refusal(""), name + " holds no results of a study as cuboct keeps them" + hint);
+  std::string whole = read_text(files.path("results.db"));
+  ASSERT_GT(whole.size(), 4096U);
+  whole.replace(100, 3000, 3000, '\xff');  // of the first page, behind its head
+  EXPECT_EQ(refusal(whole), name + " is damaged" + hint);
+}
+
+// Of a store that was killed: rows that stand in its log alone come too, and nothing is left beside it.
+TEST(Store, TakesInRowsWithoutATrace) {
+  namespace fs = std::filesystem;
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  fs::create_directory(files.path("killed"));
+  const std::string killed = files.path("killed/results.db");
+  {
+    Store live(files.path("live.db"), study);
+    Outcome outcome;
+    outcome.settings = study.points[0];
+    outcome.errors.figures = outcome.errors.values = {0.5};
+    live.put_errors(outcome);
+    fs::copy_file(files.path("live.db"), killed);
+    fs::copy_file(files.path("live.db-wal"), killed + "-wal");
+    Store store(files.path("results.db"), study);
+    EXPECT_THROW(store.add(files.path("live.db")), InputError);  // at work
+    EXPECT_THROW(store.add(files.path("results.db")), InputError);
+  }
+  const auto files_there = [&] {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::directory_iterator(files.path("killed")))
+      found[entry.path().filename().string()] = read_text(entry.path().string());
+    return found;
+  };
+  const auto before = files_there();
+  Store store(files.path("results.db"), study);
+  EXPECT_EQ(store.add(killed), 1);
+  EXPECT_TRUE(store.has_errors(study.points[0]));
+  EXPECT_EQ(files_there(), before);
 }
 
 // What this machine's errors and another machine's speed make is a point of the other: speeds tell machines
