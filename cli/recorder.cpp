@@ -14,6 +14,7 @@
 
 #include "cli/load_any.h"
 #include "model/base/directory_lock.h"
+#include "model/base/error_parts.h"
 #include "model/base/output.h"
 #include "model/trace/frames.h"
 #include "model/trace/raster.h"
@@ -128,7 +129,7 @@ struct Recorder::Impl {
       return true;
     } catch (const InputError& error) {
       if (first_error.empty()) {
-        first_error = error.what();
+        first_error = parts_of(error).message;
         fmt::print(stderr, "warning: {}; the run goes on\n", first_error);
       }
       return false;

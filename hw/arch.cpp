@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "hw/bricks.h"
-#include "model/scene/config.h"
+#include "model/scene/file_kind.h"
 #include "model/scene/name.h"
 
 namespace cuboct {
@@ -138,7 +138,7 @@ Arch read_arch(const std::string& path) {
 }
 
 Arch parse_arch(const std::string& text, const std::string& path) {
-  Arch arch = arch_of(parse_config(text, path));
+  Arch arch = read_kind(FileKind::arch, text, path, arch_of);
   arch.text = text;
   return arch;
 }

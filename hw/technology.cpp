@@ -5,7 +5,7 @@
 
 #include "model/base/error.h"
 #include "model/base/spelling.h"
-#include "model/scene/config.h"
+#include "model/scene/file_kind.h"
 
 namespace cuboct {
 namespace {
@@ -97,10 +97,12 @@ const char* name_of(Constant constant) { return kRows[static_cast<size_t>(consta
 const char* unit_of(Constant constant) { return kRows[static_cast<size_t>(constant)].unit; }
 
 Technology parse_technology(const std::string& text, const std::string& path) {
-  return technology_of(parse_config(text, path));
+  return read_kind(FileKind::technology, text, path, technology_of);
 }
 
-Technology read_technology(const std::string& path) { return technology_of(read_config(path)); }
+Technology read_technology(const std::string& path) {
+  return read_kind(FileKind::technology, path, technology_of);
+}
 
 std::vector<LinkKind> parse_links(const std::string& text, const std::string& path) {
   const ConfigTable root = parse_config(text, path);

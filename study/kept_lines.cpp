@@ -26,9 +26,9 @@ KeptLines::KeptLines(std::string path, uint64_t hash, const std::string& what,
       take(nlohmann::json::parse(lines[k]));
       lines_.emplace_back(lines[k]);
     }
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const nlohmann::json::exception&) {
     throw InputError(fmt::format("{}: line {} is none of its results", path_, lines_.size() + 2),
-                     error.what());
+                     "it is damaged: take another --out DIR, or remove the file and begin again");
   }
 }
 

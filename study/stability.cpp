@@ -13,6 +13,7 @@
 #include "emu/lattice/run.h"
 #include "hw/engine_kind.h"
 #include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "study/measure_run.h"
 
@@ -180,7 +181,7 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
   try {
     plan = plan_of(scene, arch);
   } catch (const InputError& error) {
-    return {Verdict::refused, error.what()};
+    return {Verdict::refused, parts_of(error).message};
   }
   const FixedRule& rule = plan->rule;
   const Judge judge(std::ldexp(seed / rule.cell_edge, rule.widths.velocity_frac()), resolution);

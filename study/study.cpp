@@ -10,7 +10,7 @@
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/spelling.h"
-#include "model/scene/config.h"
+#include "model/scene/file_kind.h"
 #include "study/axes.h"
 #include "study/changed_base.h"
 #include "study/study_frame.h"
@@ -158,8 +158,9 @@ Study read_study_frame(const ConfigTable& root, const std::string& path) {
   return study;
 }
 
-Study read_study(const std::string& path) {
-  const ConfigTable root = read_config(path);
+namespace {
+
+Study study_of(const ConfigTable& root, const std::string& path) {
   Study study = read_study_frame(root, path);
   read_speed_settings(root, study);
   read_points(root, study);
@@ -168,6 +169,12 @@ Study read_study(const std::string& path) {
     root.fail("a study without points", "add a [[sweep]] or a [search]");
   root.done();
   return study;
+}
+
+}  // namespace
+
+Study read_study(const std::string& path) {
+  return read_kind(FileKind::study, path, [&](const ConfigTable& root) { return study_of(root, path); });
 }
 
 }  // namespace cuboct::study

@@ -12,7 +12,7 @@
 #include "model/base/hash.h"
 #include "model/multiscale/mesh_file.h"
 #include "model/multiscale/tersoff_law.h"
-#include "model/scene/config.h"
+#include "model/scene/file_kind.h"
 
 namespace cuboct {
 namespace {
@@ -278,12 +278,12 @@ ElementEffort finest(const CompareInput& compare) {
           std::ranges::min(compare.strain_tolerance), std::ranges::max(compare.refine)};
 }
 
-ElementStudy read_element_study(const std::string& path, const std::optional<ElementEffort>& effort) {
+namespace {
+
+ElementStudy element_study_of(const ConfigTable& root, const std::string& path,
+                              const std::optional<ElementEffort>& effort) {
   ElementStudy out;
   out.path = path;
-  const std::string text = read_config_text(path);
-  out.hash = hash_of(text);
-  const ConfigTable root = parse_config(text, path);
   out.title = root.string_or("title", "");
   const auto table = [&](const char* key) { return root.at(key).table(); };
   out.material = read_material(table("material"));
@@ -303,6 +303,17 @@ ElementStudy read_element_study(const std::string& path, const std::optional<Ele
   if (!out.stretch && !out.wave) root.fail("nothing to study: the file has neither [stretch] nor [wave]");
   check_mesh(out.mesh, out.mesh_name);
   return out;
+}
+
+}  // namespace
+
+ElementStudy read_element_study(const std::string& path, const std::optional<ElementEffort>& effort) {
+  const std::string text = read_config_text(path);
+  ElementStudy study = read_kind(FileKind::element_study, text, path, [&](const ConfigTable& root) {
+    return element_study_of(root, path, effort);
+  });
+  study.hash = hash_of(text);
+  return study;
 }
 
 std::shared_ptr<const SampleMaterial> material_of(const ElementStudy& study) {

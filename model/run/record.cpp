@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "model/analysis/meter.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/rules/rounds_rule.h"
@@ -243,7 +244,8 @@ void Loop::journal(const std::function<void(Journal&)>& write) {
   try {
     write(*journal_);
   } catch (const InputError& error) {
-    fmt::print(stderr, "warning: {}; no checkpoint from step {} on\n", error.what(), trace_.steps_done);
+    fmt::print(stderr, "warning: {}; no checkpoint from step {} on\n", parts_of(error).message,
+               trace_.steps_done);
     journal_.reset();
   }
 }
@@ -350,7 +352,7 @@ bool Loop::write_state() {
     write_checkpoint(save_plan_.path, head, *engine_, kind_.displaced);
     return true;
   } catch (const InputError& error) {
-    fmt::print(stderr, "warning: {}; no checkpoint of step {}\n", error.what(), head.step);
+    fmt::print(stderr, "warning: {}; no checkpoint of step {}\n", parts_of(error).message, head.step);
     return false;
   }
 }

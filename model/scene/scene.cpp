@@ -11,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/contract/law.h"
 #include "model/rules/rounds_rule.h"
+#include "model/scene/file_kind.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
 #include "model/solid/vibrations.h"
@@ -297,14 +298,6 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   return scene;
 }
 
-// A machine's file in the place of a scene's.
-void refuse_arch(const ConfigTable& root, const std::string& path) {
-  if (root.has("law") || root.has("packing") || root.has("rule")) return;
-  for (const char* key : {"node", "link", "widths", "table", "plan"})
-    if (const auto found = root.find(key); found && found->is_table())
-      found->fail("this is an arch file, not a scene", fmt::format("--arch {} gives it to a scene", path));
-}
-
 }  // namespace
 
 double first_shell(const Scene& scene) { return scene.pitch > 0 ? 1.207 * scene.pitch : scene.rule.cutoff(); }
@@ -328,8 +321,8 @@ Scene read_scene(const std::string& path, const SceneChoice& choice) {
 }
 
 Scene parse_scene(const std::string& text, const std::string& path, const SceneChoice& choice) {
-  refuse_arch(parse_config(text, path), path);
-  Scene scene = scene_of(parse_config(text, path), path, choice);
+  Scene scene = read_kind(FileKind::scene, text, path,
+                          [&](const ConfigTable& root) { return scene_of(root, path, choice); });
   scene.text = text;
   return scene;
 }

@@ -9,7 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/base/hash.h"
-#include "model/scene/config.h"
+#include "model/scene/file_kind.h"
 
 namespace cuboct::bond_fit {
 namespace {
@@ -189,8 +189,9 @@ const std::array<std::string, kDiamondProperties>& property_names() {
   return names;
 }
 
-BondStudy read_bond_study(const std::string& path) {
-  const ConfigTable root = read_config(path);
+namespace {
+
+BondStudy bond_study_of(const ConfigTable& root, const std::string& path) {
   BondStudy study;
   study.path = path;
   study.title = root.string_or("title", "");
@@ -205,6 +206,13 @@ BondStudy read_bond_study(const std::string& path) {
   root.done();
   study.hash = hash_of(study);
   return study;
+}
+
+}  // namespace
+
+BondStudy read_bond_study(const std::string& path) {
+  return read_kind(FileKind::potential_fit, path,
+                   [&](const ConfigTable& root) { return bond_study_of(root, path); });
 }
 
 }  // namespace cuboct::bond_fit

@@ -9,6 +9,7 @@
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/spelling.h"
+#include "model/scene/file_kind.h"
 #include "study/changed_base.h"
 #include "study/fit/cheap_case.h"
 
@@ -151,8 +152,9 @@ double mirrored(double x) { return std::abs(std::remainder(x, 2.0)); }
 
 }  // namespace
 
-FitStudy read_fit(const std::string& path) {
-  const ConfigTable root = read_config(path);
+namespace {
+
+FitStudy fit_of(const ConfigTable& root, const std::string& path) {
   FitStudy study;
   study.path = path;
   study.title = root.string_or("title", "");
@@ -173,6 +175,12 @@ FitStudy read_fit(const std::string& path) {
   check_work(root, study);
   study.hash = hash_of(study);
   return study;
+}
+
+}  // namespace
+
+FitStudy read_fit(const std::string& path) {
+  return read_kind(FileKind::curve_fit, path, [&](const ConfigTable& root) { return fit_of(root, path); });
 }
 
 Parameters parameters_of(const FitStudy& study, const std::vector<double>& sample) {

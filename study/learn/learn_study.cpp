@@ -9,7 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/base/hash.h"
-#include "model/scene/config.h"
+#include "model/scene/file_kind.h"
 
 namespace cuboct::learn {
 namespace {
@@ -180,10 +180,11 @@ void check_columns(const ConfigTable& grid, const GridInput& input) {
 
 }  // namespace
 
-LearnStudy read_learn_study(const std::string& path) {
+namespace {
+
+LearnStudy learn_study_of(const ConfigTable& root, const std::string& path) {
   LearnStudy out;
   out.path = path;
-  const ConfigTable root = read_config(path);
   out.title = root.string_or("title", "");
   const auto table = [&](const char* key) { return root.at(key).table(); };
   out.sheet = read_sheet(table("sheet"));
@@ -202,6 +203,13 @@ LearnStudy read_learn_study(const std::string& path) {
   root.done();
   hash_data(out);
   return out;
+}
+
+}  // namespace
+
+LearnStudy read_learn_study(const std::string& path) {
+  return read_kind(FileKind::learn_study, path,
+                   [&](const ConfigTable& root) { return learn_study_of(root, path); });
 }
 
 }  // namespace cuboct::learn

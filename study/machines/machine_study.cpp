@@ -10,6 +10,7 @@
 
 #include "model/base/error_parts.h"
 #include "model/base/hash.h"
+#include "model/scene/file_kind.h"
 #include "study/axes.h"
 #include "study/study_frame.h"
 
@@ -236,8 +237,9 @@ bool is_machine_study(const std::string& path) {
   return root.has("machines") || root.has("evolve");
 }
 
-MachineStudy read_machine_study(const std::string& path, const MachineNames& names) {
-  const ConfigTable root = read_config(path);
+namespace {
+
+MachineStudy machine_study_of(const ConfigTable& root, const std::string& path, const MachineNames& names) {
   MachineStudy study;
   for (const char* key : {"sweep", "search"})
     if (const auto other = root.find(key))
@@ -257,6 +259,13 @@ MachineStudy read_machine_study(const std::string& path, const MachineNames& nam
   root.done();
   study.hash = hash_of(study);
   return study;
+}
+
+}  // namespace
+
+MachineStudy read_machine_study(const std::string& path, const MachineNames& names) {
+  return read_kind(FileKind::machine_study, path,
+                   [&](const ConfigTable& root) { return machine_study_of(root, path, names); });
 }
 
 }  // namespace cuboct::study

@@ -177,6 +177,99 @@ TEST(Command, NamesAFileThatIsNotThere) {
     expect_refusal({command, "scenes/none.toml"}, "scenes/none.toml: cannot read this file\n");
 }
 
+// One line says what a file is and who takes it, in place of the first key that it lacks.
+TEST(Command, CallsAFileOfAnotherKindWhatItIs) {
+  struct Mistaken {
+    std::vector<std::string> words;
+    std::string is;    // "FILE:LINE: this is ..."
+    std::string hint;  // who takes it
+  };
+  const std::vector<Mistaken> all{
+      {{"run", "scenes/studies/coupon.toml"},
+       "scenes/studies/coupon.toml:4:1: this is a study of settings, not a scene",
+       "'cuboct explore scenes/studies/coupon.toml' takes it"},
+      {{"check", "scenes/studies/machines_coupon.toml"},
+       "this is a study of machines, not a scene",
+       "'cuboct explore scenes/studies/machines_coupon.toml' takes it"},
+      {{"check", "scenes/studies/fit_bar.toml"},
+       "this is a fit of a law to a curve, not a scene",
+       "'cuboct fit scenes/studies/fit_bar.toml' takes it"},
+      {{"check", "scenes/studies/silicon_fit.toml"},
+       "this is a fit of a potential, not a scene",
+       "'cuboct fit scenes/studies/silicon_fit.toml' takes it"},
+      {{"check", "scenes/studies/silicon_rod.toml"},
+       "this is a study of elements, not a scene",
+       "'cuboct multiscale scenes/studies/silicon_rod.toml' takes it"},
+      {{"check", "scenes/studies/graphene.toml"},
+       "this is a study of a learned kernel, not a scene",
+       "'cuboct learn scenes/studies/graphene.toml' takes it"},
+      {{"check", "technologies/cmos7.toml"},
+       "this is a technology, not a scene",
+       "'cuboct energy SCENE --technology technologies/cmos7.toml' takes it"},
+      {{"check", "scenes/lj_block.toml", "--arch", "scenes/coupon.toml"},
+       "this is a scene, not an arch file",
+       "'cuboct run scenes/coupon.toml' takes it"},
+      {{"check", "scenes/lj_block.toml", "--arch", "technologies/cmos7.toml"},
+       "this is a technology, not an arch file",
+       "'cuboct energy SCENE --technology technologies/cmos7.toml' takes it"},
+      {{"energy", "scenes/lj_block.toml", "--technology", "scenes/archs/small.toml"},
+       "this is an arch file, not a technology",
+       "--arch scenes/archs/small.toml gives it to a scene"},
+      {{"multiscale", "scenes/lj_block.toml"},
+       "this is a scene, not a study of elements",
+       "'cuboct run scenes/lj_block.toml' takes it"},
+#ifdef CUBOCT_HAS_STUDIES
+      {{"explore", "scenes/lj_block.toml"},
+       "this is a scene, not a study of settings",
+       "'cuboct run scenes/lj_block.toml' takes it"},
+      {{"explore", "scenes/studies/fit_bar.toml"},
+       "this is a fit of a law to a curve, not a study of settings",
+       "'cuboct fit scenes/studies/fit_bar.toml' takes it"},
+      {{"pitch", "scenes/studies/coupon.toml"},
+       "this is a study of settings, not a scene",
+       "'cuboct explore scenes/studies/coupon.toml' takes it"},
+#endif
+#ifdef CUBOCT_HAS_FITS
+      {{"fit", "scenes/studies/coupon.toml"},
+       "this is a study of settings, not a fit of a law to a curve",
+       "'cuboct explore scenes/studies/coupon.toml' takes it"},
+#endif
+  };
+  for (const Mistaken& one : all) {
+    const Answer answer = Bench(false).cuboct(one.words);
+    EXPECT_EQ(answer.code, 2) << one.is;
+    EXPECT_EQ(answer.out, "") << one.is;
+    const std::string err = without_excerpt(answer.err), end = one.is + "\n  hint: " + one.hint + "\n";
+    EXPECT_TRUE(err.ends_with(end)) << err;
+    EXPECT_TRUE(err.starts_with(one.words.back() + ":")) << err;
+  }
+}
+
+// What is wrong in a file of the right kind is told as before, whatever other keys it has.
+TEST(Command, TellsAFileOfTheRightKindWhatItLacks) {
+  const Bench bench(false);
+  const std::string path = bench.path("scene.toml");
+  std::ofstream(path) << "mass = \"1 g\"\n[sweep]\n[law]\nkind = \"elastic\"\n";
+  EXPECT_NE(bench.cuboct({"check", path}).err.find("missing key "), std::string::npos);
+  std::ofstream(path) << "title = \"nothing\"\n";
+  EXPECT_NE(bench.cuboct({"check", path}).err.find("missing key 'law'"), std::string::npos);
+}
+
+// The error of a library, told at the place of the key: its hint stays a line of its own.
+TEST(Command, HintsOfAnErrorWithinAFileAreLines) {
+  const Bench bench(false);  // without the module that reads meshes
+  std::ofstream(bench.path("a.stl")) << "solid\n";
+  const std::string path = bench.path("scene.toml");
+  std::ofstream(path)
+      << "density = \"1 g/cm^3\"\n[packing]\npitch = \"1 mm\"\n[geometry]\nshape = \"mesh\"\n"
+         "file = \"a.stl\"\nunit = \"mm\"\n[law]\nkind = \"elastic\"\nstiffness = \"1 kN/m\"\n"
+         "[run]\nduration = \"1 ms\"\n";
+  const Answer answer = bench.cuboct({"check", path});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(answer.err.find("\\n"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("\n  hint: "), std::string::npos) << answer.err;
+}
+
 TEST(Command, SaysHowToGetAnEngineThatIsNotBuilt) {
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "systemc"},
                  "the systemc engine is not built: no program cuboct-systemc beside cuboct\n"

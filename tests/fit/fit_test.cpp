@@ -64,6 +64,19 @@ TEST_F(SmallFit, IsNotMixedWithAnother) {
   EXPECT_EQ(Evaluations(path("out"), longer).size(), evaluations.size());
   const FitStudy other = read_fit(study(target, "generations = 0\nseed = 2\n"));
   EXPECT_THROW(Evaluations(path("out"), other), InputError);
+  // In our words, not in those of the library that reads it.
+  const std::string file = path("out/evaluations.jsonl"), text = read_text(file);
+  write_text(file,
+             text.substr(0, text.find('\n') + 1) + "{\"free\": [1,\n" + text.substr(text.find('\n') + 1));
+  try {
+    Evaluations(path("out"), one);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(),
+              file +
+                  ": line 2 is none of its results\n  hint: it is damaged: take another --out DIR, "
+                  "or remove the file and begin again");
+  }
 }
 
 // The fixed rule and doubles, of the same start: they part by the rounding of the rule.

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
+#include <vector>
 
 #include "hw/setup.h"
+#include "model/base/error.h"
 #include "model/contract/golden.h"
 #include "model/contract/neighbours.h"
 #include "model/real/reference.h"
+#include "model/scene/file_kind.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
@@ -19,6 +23,45 @@ namespace {
 const std::string kRoot = CUBOCT_SOURCE_DIR;
 
 using MadeSetup = cuboct::Setup;  // testing::Test has a member of that name
+
+// Every file of the tree is taken for what it is, and for nothing else.
+TEST(FileKinds, OfAllExamples) {
+  namespace fs = std::filesystem;
+  const std::vector<FileKind> kinds{FileKind::scene,         FileKind::arch,          FileKind::study,
+                                    FileKind::machine_study, FileKind::curve_fit,     FileKind::potential_fit,
+                                    FileKind::learn_study,   FileKind::element_study, FileKind::technology,
+                                    FileKind::run_record};
+  std::map<FileKind, int> seen;
+  for (const char* folder : {"scenes", "technologies"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot + "/" + folder)) {
+      const std::string path = entry.path().string(), name = entry.path().filename().string();
+      // Tables of links and of others' machines have names of their own alone; one chip has none of the
+      // figures.
+      if (entry.path().extension() != ".toml" || name == "links.toml" || name == "boards.toml" ||
+          name == "machines.toml" || path.ends_with("technologies/ecp5.toml"))
+        continue;
+      std::vector<FileKind> taken;
+      const std::string text = read_config_text(path);
+      for (const FileKind kind : kinds) {
+        try {
+          refuse_other_kind(kind, text, path);
+          taken.push_back(kind);
+        } catch (const InputError&) {
+        }
+      }
+      ASSERT_EQ(taken.size(), 1u) << path;
+      ++seen[taken[0]];
+      const bool arch = path.find("/archs/") != std::string::npos;
+      EXPECT_EQ(arch, taken[0] == FileKind::arch && arch) << path;
+      EXPECT_EQ(path.find("/technologies/") != std::string::npos, taken[0] == FileKind::technology) << path;
+      if (path.find("/failures/") != std::string::npos && !arch) {
+        EXPECT_EQ(taken[0], FileKind::scene) << path;
+      }
+    }
+  EXPECT_EQ(seen.size(), kinds.size() - 1);  // no record of a run
+  EXPECT_THROW(refuse_other_kind(FileKind::scene, "scene = 'a'\nengine = 'b'\nstate = 'c'\n", "run.toml"),
+               InputError);
+}
 
 struct Outcome {
   size_t moved = 0;   // particles that changed their node
