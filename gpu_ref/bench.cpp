@@ -2,7 +2,6 @@
 #include "gpu_ref/bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "model/base/interrupt.h"
@@ -14,18 +13,18 @@ Arithmetic arithmetic_of(const std::string& word) {
   return word == "fixed" ? Arithmetic::fixed : word == "float" ? Arithmetic::float32 : Arithmetic::float64;
 }
 
-double timed(Engine& engine, uint64_t steps) {
-  const double begin = PowerMeter::now();
+double timed(Engine& engine, uint64_t steps, MeterClock& clock) {
+  const double begin = clock.now();
   engine.advance(steps);
-  return PowerMeter::now() - begin;
+  return clock.now() - begin;
 }
 
 // Steps that take `seconds`: as many as took at least a quarter of it, scaled.
-uint64_t steps_for(Engine& engine, double seconds) {
-  timed(engine, 1);  // the first list, memory that is touched
+uint64_t steps_for(Engine& engine, double seconds, MeterClock& clock) {
+  timed(engine, 1, clock);  // the first list, memory that is touched
   uint64_t steps = 1;
   while (!interrupted()) {
-    const double took = timed(engine, steps);
+    const double took = timed(engine, steps, clock);
     const auto scaled = [&](double to) {
       return static_cast<uint64_t>(std::ceil(static_cast<double>(steps) * to / std::max(took, 1e-9)));
     };
@@ -88,12 +87,12 @@ std::optional<RowResult> measure_row(const BenchRow& row, BenchBody& body, const
   EnergyMeter meter(power, options.times);
   if (options.energy) meter.idle();
   engine->advance(options.settle.value_or(row.scene.settle_steps()));
-  result.steps = steps_for(*engine, options.seconds);
+  result.steps = steps_for(*engine, options.seconds, power.clock());
   while (!interrupted()) {
     result.seconds.clear();
     result.before = engine->counters();
     while (static_cast<int>(result.seconds.size()) < options.repeats && !interrupted()) {
-      result.seconds.push_back(timed(*engine, result.steps));
+      result.seconds.push_back(timed(*engine, result.steps, power.clock()));
       meter.did(result.steps);
     }
     if (interrupted()) return std::nullopt;

@@ -32,6 +32,7 @@ struct BenchMachine {
   std::function<std::unique_ptr<Engine>(const Scene&, const Body&, Arithmetic, const Options&)> real;
   std::function<double(int)> copy_bandwidth;
   std::string nvml = kNvmlLibrary;
+  MeterClock* clock = &steady_clock();
 };
 int run_bench(int argc, char** argv, const BenchMachine& machine);
 

@@ -134,7 +134,7 @@ int run(const Request& request, const BenchMachine& machine) {
   if (setting.devices.empty()) throw InputError("no GPU: " + why);
   std::vector<std::string> buses;
   for (const Device& device : setting.devices) buses.push_back(device.bus);
-  PowerMeter power(buses, machine.nvml);
+  PowerMeter power(buses, machine.nvml, *machine.clock);
   setting.driver = power.driver();
   setting.no_energy = options.energy ? power.why() : "not asked for";
   catch_interrupts();

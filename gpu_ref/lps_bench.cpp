@@ -95,10 +95,10 @@ bool time_runs(const Request& request, const std::string& name, const Case& of, 
   std::vector<double> seconds;
   const auto run = [&] {
     device.start();
-    const double begin = PowerMeter::now();
+    const double begin = steady_clock().now();
     device.advance(steps);
     meter.did(steps);
-    return PowerMeter::now() - begin;
+    return steady_clock().now() - begin;
   };
   run();  // the first one warms the device up
   while (static_cast<int>(seconds.size()) < request.repeats && !interrupted()) seconds.push_back(run());

@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
 #include <mutex>
 #include <set>
-#include <thread>
 
 #include "model/base/interrupt.h"
 
@@ -86,16 +83,19 @@ struct PowerMeter::Impl {
     double time = 0, mhz = 0;  // s
   };
 
+  explicit Impl(MeterClock& clock) : clock(clock) {}
+  double now() const { return clock.now(); }
+
+  MeterClock& clock;
   std::unique_ptr<Nvml> nvml;
   std::string why, driver;
   std::vector<Board> boards;
 
-  std::thread thread;
-  mutable std::mutex mutex;  // of what follows, and of the boards' updates
-  std::condition_variable told;
-  bool stopping = false;
+  double begin = 0, next_clock = 0;  // s: of the watch, of the next look at clocks
+  mutable std::mutex mutex;          // of what follows, and of the boards' updates
   std::string failure;
   std::vector<Clock> clocks;
+  std::unique_ptr<MeterClock::Watch> watch;  // last: it goes before what it looks at
 
   void ask(Board& board) {
     const double from = now();
@@ -127,29 +127,26 @@ struct PowerMeter::Impl {
     if (count > 0) clocks.push_back({now(), sum / count});
   }
 
-  void watch() {
-    const double begin = now();
-    double next_clock = begin;
+  // Returns the time to the next look.
+  double look() {
     try {
-      while (true) {
-        for (Board& board : boards) ask(board);
-        const double interval = std::clamp(kShare * (now() - begin), kShortest, kLongest);
-        if (now() >= next_clock) {
-          ask_clocks();
-          next_clock = now() + std::max(kClockPeriod, 10 * interval);
-        }
-        std::unique_lock lock(mutex);
-        if (told.wait_for(lock, std::chrono::duration<double>(interval), [&] { return stopping; })) return;
+      for (Board& board : boards) ask(board);
+      const double interval = std::clamp(kShare * (now() - begin), kShortest, kLongest);
+      if (now() >= next_clock) {
+        ask_clocks();
+        next_clock = now() + std::max(kClockPeriod, 10 * interval);
       }
+      return interval;
     } catch (const NvmlError& e) {
       const std::lock_guard lock(mutex);
       failure = e.what();
+      return -1;
     }
   }
 };
 
-PowerMeter::PowerMeter(const std::vector<std::string>& buses, const std::string& library)
-    : impl_(std::make_unique<Impl>()) {
+PowerMeter::PowerMeter(const std::vector<std::string>& buses, const std::string& library, MeterClock& clock)
+    : impl_(std::make_unique<Impl>(clock)) {
   try {
     if (buses.empty()) throw NvmlError("no GPU");
     impl_->nvml = std::make_unique<Nvml>(library);
@@ -186,28 +183,18 @@ const char* PowerMeter::method() const {
   return counting == boards() ? "energy counter" : counting == 0 ? "power samples" : "mixed";
 }
 
-double PowerMeter::now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+MeterClock& PowerMeter::clock() const { return impl_->clock; }
 
 void PowerMeter::start() {
   stop();
   impl_->failure.clear();
   impl_->clocks.clear();
   for (Impl::Board& board : impl_->boards) board.updates.clear();
-  impl_->stopping = false;
-  if (works()) impl_->thread = std::thread([this] { impl_->watch(); });
+  impl_->begin = impl_->next_clock = impl_->now();
+  if (works()) impl_->watch = impl_->clock.watch([impl = impl_.get()] { return impl->look(); });
 }
 
-void PowerMeter::stop() {
-  if (!impl_->thread.joinable()) return;
-  {
-    const std::lock_guard lock(impl_->mutex);
-    impl_->stopping = true;
-  }
-  impl_->told.notify_all();
-  impl_->thread.join();
-}
+void PowerMeter::stop() { impl_->watch.reset(); }
 
 PowerMeter::Window PowerMeter::between(double begin, double end) const {
   const std::lock_guard lock(impl_->mutex);
@@ -272,20 +259,21 @@ std::vector<std::pair<std::string, double>> Energy::counters(uint64_t particles)
 void EnergyMeter::idle() {
   if (!power_.works()) return;
   power_.start();
-  const auto wait = [](double seconds) {
-    const double end = PowerMeter::now() + seconds;
-    while (PowerMeter::now() < end && !interrupted())
-      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(0.05, end - PowerMeter::now())));
+  MeterClock& clock = power_.clock();
+  const auto wait = [&clock](double seconds) {
+    const double end = clock.now() + seconds;
+    for (double left = seconds; left > 0 && !interrupted(); left = end - clock.now())
+      clock.sleep(std::min(0.05, left));
   };
   wait(times_.settle);
-  idle_begin_ = PowerMeter::now();
+  idle_begin_ = clock.now();
   wait(times_.idle);
-  idle_end_ = PowerMeter::now();
+  idle_end_ = clock.now();
 }
 
 void EnergyMeter::did(uint64_t steps) {
   if (!power_.works()) return;
-  const double now = PowerMeter::now();
+  const double now = power_.clock().now();
   if (begin_ >= 0) {
     steps_ += steps;
     end_ = now;

@@ -21,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "gpu_ref/meter_clock.h"
 #include "gpu_ref/nvml.h"
 
 namespace cuboct::gpu {
@@ -48,7 +49,8 @@ class PowerMeter {
  public:
   // By PCI bus ids (Device::bus); one that comes twice counts once. Never throws: where nothing can be
   // measured `why` says it.
-  explicit PowerMeter(const std::vector<std::string>& buses, const std::string& library = kNvmlLibrary);
+  explicit PowerMeter(const std::vector<std::string>& buses, const std::string& library = kNvmlLibrary,
+                      MeterClock& clock = steady_clock());
   ~PowerMeter();
   PowerMeter(const PowerMeter&) = delete;
   PowerMeter& operator=(const PowerMeter&) = delete;
@@ -61,7 +63,7 @@ class PowerMeter {
 
   void start();  // again: forgets what it saw
   void stop();
-  static double now();  // s, of the clock of windows
+  MeterClock& clock() const;  // of windows
 
   struct Window {
     MeanPower power;   // of all boards: sums, and the longest period

@@ -71,9 +71,7 @@ TEST(Port, ThatSpeaksSomethingElse) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   });
-  const auto start = std::chrono::steady_clock::now();
   const Answer answer = run_at(pty.name, "0.5");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
   stop = true;
   babble.join();
   expect_refusal(answer, "port " + pty.name +

@@ -6,14 +6,13 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <thread>
 
 #include "model/base/hash.h"
 #include "model/trace/trace.h"
@@ -24,6 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
+
+// That a program has taken.
+double cpu_seconds(pid_t program) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(program, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 // A run of a small block with everything that a checkpoint has to keep: forces that hold particles (so that
 // displacements count), probes with a memory, energies, frames, cycles.
@@ -56,10 +63,8 @@ class Checkpoint : public testing::Test {
     return list;
   }
 
-  // Ends the program by `signal` after `delay`, where `delay` is not negative; `writing`: then as soon as it
-  // is seen to write a checkpoint. The exit code, or -N for signal N.
-  int lattice(const Strings& arguments, std::chrono::microseconds delay = std::chrono::microseconds(-1),
-              int signal = SIGKILL, bool writing = false) const {
+  // Ends the program by `signal` once `ends` is true. The exit code, or -N for signal N.
+  int lattice(const Strings& arguments, const Condition& ends = {}, int signal = SIGKILL) const {
     std::vector<char*> argv{const_cast<char*>(CUBOCT_LATTICE)};
     for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
     argv.push_back(nullptr);
@@ -70,15 +75,13 @@ class Checkpoint : public testing::Test {
       execv(CUBOCT_LATTICE, argv.data());
       _exit(127);
     }
-    if (delay.count() >= 0) {
-      std::this_thread::sleep_for(delay);
-      siginfo_t ended{};
-      while (writing && !fs::exists(path("state.tmp")) &&
-             waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-             ended.si_pid == 0) {
+    siginfo_t ended{};
+    while (ends && waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           ended.si_pid == 0)
+      if (ends(child)) {
+        kill(child, signal);
+        break;
       }
-      kill(child, signal);
-    }
     int status = 0;
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
@@ -101,10 +104,11 @@ class Checkpoint : public testing::Test {
 
   // Interrupts a run until it has left a checkpoint, and leaves that.
   void leave_checkpoint() const {
-    for (int ms = 5; !fs::exists(path("state")); ms += 5) {
-      ASSERT_LT(ms, 1000);
+    // Where it ends before the signal comes, it leaves none.
+    for (int tries = 0; !fs::exists(path("state")); ++tries) {
+      ASSERT_LT(tries, 1000);
       fs::remove(path("state.journal"));
-      lattice(with_checkpoint(), std::chrono::milliseconds(ms));
+      lattice(with_checkpoint(), there(path("state")));
     }
   }
 
@@ -130,7 +134,8 @@ TEST_F(Checkpoint, AHundredKillsLeaveNoTrace) {
 
   std::mt19937_64 random(7);
   int lives = 0, kills = 0, resumed = 0, in_writing = 0, runs = 0;
-  double longest = 0.1;  // s, of a life; less where runs reach their end, more where none gets far
+  double longest =
+      0.1;  // s of CPU time, of a life; less where runs reach their end, more where none gets far
   while (kills < 100 || runs < 2) {
     fs::remove(path("run.h5"));
     for (;;) {
@@ -138,10 +143,13 @@ TEST_F(Checkpoint, AHundredKillsLeaveNoTrace) {
       const bool resume = fs::exists(path("state"));
       resumed += resume;
       const Strings arguments = resume ? with_checkpoint({"--resume"}) : with_checkpoint();
-      const auto delay = std::chrono::microseconds(
-          static_cast<int64_t>(1e6 * longest * (static_cast<double>(random() >> 11) * 0x1p-53)));
+      const double life = longest * (static_cast<double>(random() >> 11) * 0x1p-53);
+      // Half of them as soon as a checkpoint is being written then.
+      const Condition over = [&](pid_t program) {
+        return cpu_seconds(program) >= life && (lives % 2 == 1 || fs::exists(path("state.tmp")));
+      };
       // Kills enough: what is left runs to its end.
-      const int code = kills < 100 ? lattice(arguments, delay, SIGKILL, lives % 2 == 0) : lattice(arguments);
+      const int code = lattice(arguments, kills < 100 ? over : Condition());
       if (code == -SIGKILL) {
         ++kills;
         in_writing += fs::exists(path("state.tmp"));
@@ -168,10 +176,7 @@ TEST_F(Checkpoint, AHundredKillsLeaveNoTrace) {
 
 TEST_F(Checkpoint, CtrlCWritesOneAndSaysHowToGoOn) {
   const std::string whole = uninterrupted();
-  int code = -SIGINT;
-  for (int ms = 5; code == -SIGINT && ms < 1000; ms += 5)  // too early: before the steps began
-    code = lattice(with_checkpoint(), std::chrono::milliseconds(ms), SIGINT);
-  ASSERT_EQ(code, 1) << contents(path("lattice.err"));
+  ASSERT_EQ(lattice(with_checkpoint(), catches_interrupts, SIGINT), 1) << contents(path("lattice.err"));
   const Trace part = read_trace(path("run.h5"));
   EXPECT_LT(part.steps(), 300u);
   EXPECT_EQ(part.frames.back().step, part.steps());

@@ -35,7 +35,7 @@ class Waiting : public ReplayEngine {
       : ReplayEngine(setting, std::move(trace)), dies_(dies) {}
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
     for (int waited = 0; step_count() >= 2 && !std::filesystem::exists(std::getenv("WAIT_FOR")); ++waited) {
-      if (waited == 1000) throw std::runtime_error("no frame was taken while the run went on");
+      if (waited == 60000) throw std::runtime_error("no frame was taken while the run went on");
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     if (dies_ && step_count() >= 2) std::abort();

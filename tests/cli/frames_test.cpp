@@ -78,10 +78,8 @@ TEST_F(ProgramFrames, TakeNoMoreRoomThanTheirReaderLeaves) {
       sender.send(state);
     }
   });
-  for (int waited = 0; waited < 1000 && !fs::exists(last); ++waited)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  ASSERT_TRUE(fs::exists(last));
+  ASSERT_TRUE(comes([&] { return fs::exists(last); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for one that would not wait
   EXPECT_FALSE(fs::exists(beyond));
   uint64_t step = 0;
   const auto see = [&](const RunState& frame) {
@@ -89,8 +87,7 @@ TEST_F(ProgramFrames, TakeNoMoreRoomThanTheirReaderLeaves) {
     EXPECT_EQ(std::get<State>(frame).particles[2].x[0], static_cast<int64_t>(step));
     ++step;
   };
-  for (int waited = 0; waited < 5000 && step < 40; ++waited)
-    if (!ours.receive(see)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_TRUE(comes([&] { return ours.receive(see), step == 40; }));
   EXPECT_EQ(step, 40u);
   EXPECT_FALSE(fs::exists(prefix + ".39"));
 }
@@ -105,8 +102,7 @@ TEST_F(ProgramFrames, OfAMachineComeWhileItRuns) {
     Process run(bench_.path("bin/cuboct"),
                 {"run", CUBOCT_SOURCE_DIR "/scenes/lj_block.toml", "--engine", "systemc", "--steps", "100000",
                  "--frame-every", "2", "--frames", "vtp", "--quiet", "--out", out});
-    for (int waited = 0; waited < 3000 && !fs::exists(out + "/frames_000003.vtp"); ++waited)
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(comes([&] { return fs::exists(out + "/frames_000003.vtp"); }));
     EXPECT_FALSE(fs::exists(out + "/trace.h5"));
   }  // SIGTERM
   const Trace trace = read_trace(out + "/trace.h5");

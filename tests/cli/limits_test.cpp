@@ -23,7 +23,7 @@ class LimitsTest : public testing::Test {
     return bench_.path(name);
   }
   Answer check(const std::string& text) const {
-    return bench_.cuboct({"check", file("scene.toml", text)}, 0, kSmall);
+    return bench_.cuboct({"check", file("scene.toml", text)}, {}, kSmall);
   }
   // The message of a refused scene, its path left out.
   std::string refusal(const std::string& text) const {
@@ -155,7 +155,7 @@ TEST_F(LimitsTest, APortWiderThanRtlHas) {
                              "[run]\ndt = 0.001\nsteps = 10\n");
   const std::string arch = file("arch.toml", "name = \"a\"\n[plan]\ncarry = [\"empty_nodes\"]\n");
   const Answer answer =
-      bench_.cuboct({"emit", scene, "--arch", arch, "--out", bench_.path("rtl")}, 0, kSmall);
+      bench_.cuboct({"emit", scene, "--arch", arch, "--out", bench_.path("rtl")}, {}, kSmall);
   EXPECT_EQ(answer.code, 2);
   EXPECT_TRUE(std::regex_match(
       answer.err,
@@ -169,7 +169,7 @@ TEST_F(LimitsTest, ListsOfSteps) {
   const std::string scene = kHead + kPair + "[run]\ndt = 0.001\nsteps = 1000000000000\n";
   const auto run = [&](const std::string& text, std::vector<std::string> more) {
     more.insert(more.begin(), {"run", file("scene.toml", text)});
-    return bench_.cuboct(more, 0, kSmall);
+    return bench_.cuboct(more, {}, kSmall);
   };
   const std::string path = bench_.path("scene.toml");
   Answer answer = run(scene + "frame_every = 1\n", {});
@@ -210,7 +210,7 @@ TEST_F(LimitsTest, FramesBeyondTheDisk) {
 
 TEST_F(LimitsTest, ThreadsAndRanksBeyondTheMachine) {
   const auto run = [&](const char* option, const char* count) {
-    return bench_.cuboct({"run", "scenes/lj_block.toml", "--steps", "2", option, count}, 0,
+    return bench_.cuboct({"run", "scenes/lj_block.toml", "--steps", "2", option, count}, {},
                          {.cpu_seconds = 20});
   };
   Answer answer = run("--ranks", "1000");

@@ -122,8 +122,8 @@ TEST_F(Log, TellsEngineAndPlanWhereAsked) {
 
 // Rows of a run that is stopped: the last one is that of the last step.
 TEST_F(Log, EndsWithTheLastStep) {
-  const Answer answer =
-      bench_.cuboct({"run", "scenes/lj_block.toml", "--engine", "golden", "--steps", "100000000"}, 1.0);
+  const Answer answer = bench_.cuboct(
+      {"run", "scenes/lj_block.toml", "--engine", "golden", "--steps", "100000000"}, bench_.table_begins());
   EXPECT_EQ(answer.code, 1);
   ASSERT_TRUE(answer.err.ends_with("\ninterrupted\n")) << answer.err;
   const Table table = table_of(answer.err.substr(0, answer.err.size() - 12));

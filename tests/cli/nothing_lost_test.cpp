@@ -9,11 +9,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <fstream>
 #include <functional>
 #include <regex>
-#include <thread>
 
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
@@ -25,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Strings = std::vector<std::string>;
-using Clock = std::chrono::steady_clock;
 
 // 256 particles; a frame of them is about 20 kB in each of a run's files.
 constexpr const char* kScene = "scenes/lj_block.toml";
@@ -80,14 +77,6 @@ class Started {
   pid_t pid_;
   long memory_ = 0;
 };
-
-// A minute, as a busy machine starts and ends programs slowly.
-bool comes(const std::function<bool()>& what) {
-  for (const auto end = Clock::now() + std::chrono::seconds(60); Clock::now() < end;
-       std::this_thread::sleep_for(std::chrono::milliseconds(2)))
-    if (what()) return true;
-  return false;
-}
 
 std::string state_of(const std::string& directory) {
   std::smatch found;
@@ -154,6 +143,13 @@ class NothingLost : public testing::Test {
       EXPECT_FALSE(fs::exists(dir() + "/" + name)) << name;
   }
 
+  // Lattice's ranks say so by a file.
+  bool ranks_step() const {
+    for (const auto& entry : fs::directory_iterator(bench_.path("tmp")))
+      if (fs::exists(entry.path() / "lattice.h5.begun")) return true;
+    return false;
+  }
+
   Bench bench_;
 };
 
@@ -172,12 +168,6 @@ class OfEngine : public NothingLost, public testing::WithParamInterface<Engine> 
     Strings all = NothingLost::run(GetParam().options);
     all.insert(all.end(), more.begin(), more.end());
     return all;
-  }
-  // Lattice's ranks say so by a file.
-  bool ranks_step() const {
-    for (const auto& entry : fs::directory_iterator(bench_.path("tmp")))
-      if (fs::exists(entry.path() / "lattice.h5.begun")) return true;
-    return false;
   }
   bool is_ranks() const { return std::string(GetParam().name) == "ranks"; }
   bool is_false() const { return std::string(GetParam().name) == "systemc"; }
@@ -267,15 +257,12 @@ TEST_P(OfEngine, AKillLeavesTheFramesSoFar) {
 }
 
 TEST_P(OfEngine, SigtermEndsItAsCtrlCDoes) {
-  Started started(bench_, run({"--steps", "10000000", "--frame-every", "50000"}));
   if (is_false()) GTEST_SKIP() << "the false one knows no signals";
-  ASSERT_TRUE(comes([&] { return fs::exists(dir() + "/frames.xyz") || ranks_step() || !started.runs(); }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // steps
-  const auto begin = Clock::now();
+  Started started(bench_, run({"--steps", "10000000", "--frame-every", "100", "--anyway"}));
+  ASSERT_TRUE(comes([&] { return fs::exists(dir() + "/frames_000001.vtp") || !started.runs(); }));
   started.signal(SIGTERM);
   const Answer answer = started.finish();
   if (answer.err.find("MPI") != std::string::npos) GTEST_SKIP() << answer.err;
-  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(20));
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "interrupted\n");
   const Trace trace = read_trace(dir() + "/trace.h5");
@@ -299,8 +286,7 @@ TEST_F(NothingLost, SigtermEndsSystemcToo) {
   fs::copy(CUBOCT_SYSTEMC, bench_.path("bin/cuboct-systemc"));
   Started started(bench_,
                   run({"--engine", "systemc", "--steps", "1000000", "--frame-every", "1", "--anyway"}));
-  ASSERT_TRUE(comes([&] { return !processes(bench_, "cuboct-systemc").empty(); }));
-  std::this_thread::sleep_for(std::chrono::seconds(2));
+  ASSERT_TRUE(comes([&] { return fs::exists(dir() + "/frames_000001.vtp"); }));
   started.signal(SIGTERM);
   const Answer answer = started.finish();
   EXPECT_EQ(answer.code, 1);
@@ -321,7 +307,6 @@ TEST_F(NothingLost, SigtermEndsSystemcToo) {
 TEST_P(OfEngine, TwoRunsIntoOneDirectoryAreOne) {
   Started started(bench_, run({"--steps", "10000000", "--anyway"}));
   ASSERT_TRUE(comes([&] { return !contents(dir() + "/.lock").empty(); }));
-  const auto begin = Clock::now();
   for (const Strings& more : {Strings{}, Strings{"--force"}}) {
     Strings arguments = run({"--steps", "3"});
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -331,8 +316,7 @@ TEST_P(OfEngine, TwoRunsIntoOneDirectoryAreOne) {
                                       "  hint: another --out, or wait for its end\n",
                                       dir(), started.pid()));
   }
-  EXPECT_LT(Clock::now() - begin, std::chrono::seconds(10));
-  EXPECT_EQ(kill(started.pid(), 0), 0);
+  EXPECT_TRUE(started.runs());
 }
 
 TEST_F(NothingLost, NoCommandWritesIntoADirectoryInUse) {
@@ -505,10 +489,14 @@ TEST_F(Ranks, OutliveNobody) {
   if (bench_.cuboct({"run", kScene, "--steps", "1", "--ranks", "2"}).code != 0) GTEST_SKIP() << "no MPI";
   for (const int signal : {SIGKILL, SIGTERM, SIGHUP})
     for (const size_t ranks : {0u, 1u, 4u}) {
+      fs::remove_all(bench_.path("tmp"));  // what a killed one left
+      fs::create_directory(bench_.path("tmp"));
       Started started(bench_, run({"--steps", "10000000", "--ranks", "4", "--force"}));
       // With so many ranks there; the fifth is cuboct.
       ASSERT_TRUE(comes([&] { return processes(bench_).size() >= ranks + 1; }));
-      if (ranks == 4) std::this_thread::sleep_for(std::chrono::seconds(1));
+      if (ranks == 4) {
+        ASSERT_TRUE(comes([&] { return ranks_step(); }));
+      }
       started.signal(signal);
       started.finish();
       EXPECT_TRUE(comes([&] { return processes(bench_).empty(); })) << signal << " " << ranks;

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -73,8 +74,38 @@ double seconds(const timeval& time) {
 
 }  // namespace
 
-Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt_after,
+Condition there(const std::string& path) {
+  return [path](pid_t) { return fs::exists(path); };
+}
+
+bool catches_interrupts(pid_t program) {
+  std::ifstream status("/proc/" + std::to_string(program) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1) != 0;
+  return false;
+}
+
+bool comes(const std::function<bool()>& what) {
+  using Clock = std::chrono::steady_clock;
+  for (const auto end = Clock::now() + std::chrono::minutes(10); Clock::now() < end;
+       std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+    if (what()) return true;
+  return false;
+}
+
+Condition Bench::table_begins() const {
+  // Names, units, and the row of the first step.
+  return [file = path("err")](pid_t) {
+    const std::string text = contents(file);
+    return std::count(text.begin(), text.end(), '\n') >= 3;
+  };
+}
+
+Answer Bench::cuboct(const std::vector<std::string>& arguments, const Condition& interrupts,
                      const Limits& limits) const {
+  // What an earlier one said is nothing to wait for.
+  for (const char* name : {"out", "err"}) fs::remove(path(name));
   const std::string program = path("bin/cuboct");
   std::vector<char*> argv{const_cast<char*>("cuboct")};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -92,9 +123,14 @@ Answer Bench::cuboct(const std::vector<std::string>& arguments, double interrupt
     if (chdir(CUBOCT_SOURCE_DIR) == 0) execv(program.c_str(), argv.data());
     _exit(127);
   }
-  if (interrupt_after > 0) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(interrupt_after));
-    kill(child, SIGINT);
+  siginfo_t ended{};
+  while (interrupts && waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         ended.si_pid == 0) {
+    if (interrupts(child)) {
+      kill(child, SIGINT);
+      break;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   int status = 0;
   rusage used{};

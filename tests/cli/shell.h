@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +25,14 @@ struct Limits {
   int cores = 0;             // bound to the first so many
 };
 
+// Of a program that runs: asked until it is true.
+using Condition = std::function<bool(pid_t program)>;
+Condition there(const std::string& path);  // a file
+bool catches_interrupts(pid_t program);    // SIGINT has a handler
+
+// Waits until `what` is true; false after ten minutes, which no busy machine needs.
+bool comes(const std::function<bool()>& what);
+
 // A directory of its own for each test, with a copy of cuboct and, if asked, fake engines beside it.
 class Bench {
  public:
@@ -30,10 +41,12 @@ class Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  // Runs cuboct in the root of the sources, without a terminal. `interrupt_after` > 0: sends SIGINT after so
-  // many seconds.
-  Answer cuboct(const std::vector<std::string>& arguments, double interrupt_after = 0,
+  // Runs cuboct in the root of the sources, without a terminal. SIGINT comes once `interrupts` is true: tests
+  // wait for what they see, not for a time.
+  Answer cuboct(const std::vector<std::string>& arguments, const Condition& interrupts = {},
                 const Limits& limits = {}) const;
+  // The table of a run on stderr has a row.
+  Condition table_begins() const;
   std::string path(const std::string& name) const { return (directory_ / name).string(); }
 
  private:

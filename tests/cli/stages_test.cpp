@@ -209,29 +209,29 @@ TEST(Stages, ResumeInTheStageThatWasCut) {
   EXPECT_EQ(hashes(bench, "a"), hashes(bench, "b"));
 }
 
-// By Ctrl-C, a second in: the second stage is cut, leaves a checkpoint, and goes on from it. Where the
-// machine is so slow or so quick that it is not cut, the length of the stage is tried anew.
+// By Ctrl-C as soon as the second stage has begun: it is cut, leaves a checkpoint, and goes on from it. Where
+// it ends before the signal comes, a longer stage is tried.
 TEST(Stages, GoOnFromTheCheckpointOfTheStageThatWasCut) {
   const Bench bench(false);
   const std::string scene = bench.path("long.toml");
-  for (uint64_t steps = 100'000; steps < 20'000'000; steps *= 4) {
+  for (uint64_t steps = 20'000; steps < 20'000'000; steps *= 4) {
     write_text(scene, read_config_text(CUBOCT_SOURCE_DIR "/scenes/lj_block.toml") +
                           "\n[[stage]]\nname = \"pull\"\nsteps = 12\n[[stage]]\nname = \"hold\"\nsteps = " +
                           std::to_string(steps) + "\nprobe_every = 1000\n");
     const std::vector<std::string> run{"run",
                                        scene,
                                        "--hash-every",
-                                       "100000",
+                                       "1000",
                                        "--force",
                                        "--no-watch",
                                        "--out",
                                        bench.path("cut"),
                                        "--checkpoint-every",
                                        "1 h"};
-    const Answer cut = bench.cuboct(run, 1);
-    const std::string checkpoint = bench.path("cut/2-hold/checkpoint");
-    if (cut.code == 0 || !fs::exists(checkpoint)) continue;
+    const Answer cut = bench.cuboct(run, there(bench.path("cut/2-hold/trace.part.h5")));
+    if (cut.code == 0) continue;
     EXPECT_EQ(cut.code, 1);
+    EXPECT_TRUE(fs::exists(bench.path("cut/2-hold/checkpoint")));
     EXPECT_NE(cut.out.find("stage 2-hold  interrupted"), std::string::npos) << cut.out;
     std::vector<std::string> again = run;
     again[4] = "--resume";

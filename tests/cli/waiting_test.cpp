@@ -49,7 +49,7 @@ double cpu_of(const std::string& option, const std::string& count, int cores = 0
   const Bench bench(false);
   std::filesystem::copy(CUBOCT_LATTICE, bench.path("bin/cuboct-lattice"));
   const Answer answer = bench.cuboct(
-      {"run", "scenes/coupon.toml", "--no-watch", "--steps", steps, option, count}, 0, {.cores = cores});
+      {"run", "scenes/coupon.toml", "--no-watch", "--steps", steps, option, count}, {}, {.cores = cores});
   EXPECT_EQ(answer.code, 0) << answer.err;
   return answer.cpu;
 }

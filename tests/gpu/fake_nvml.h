@@ -24,6 +24,8 @@ struct FakeNvml {
   int count = 0;
   int init = 0;      // what nvmlInit_v2 answers
   int sessions = 0;  // that are open
+  // s: where the time stands by which boards live; null: the steady clock's.
+  const double* time = nullptr;
 };
 
 }  // namespace cuboct::test

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The gpu engine as users meet it: `cuboct` with cuboct-gpu beside it, here the one that computes on the
 // host.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -176,30 +176,33 @@ TEST_F(GpuProgram, MeasuresRealNumbersAsTheReferenceDoes) {
 // Ctrl-C of the command, which starts the program: until the run is over.
 TEST_F(GpuProgram, GoesOnWhereCtrlCLeftIt) {
   for (const std::string precision : {"fixed", "float"}) {
-    const std::vector<std::string> plain{
-        "scenes/coupon.toml", "--engine", "gpu", "--precision", precision, "--quiet", "--steps", "1500",
-        "--frame-every",      "500"};
-    const auto begin = std::chrono::steady_clock::now();
-    const Trace whole = run("whole" + precision, plain);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    std::vector<std::string> arguments = plain;
     const std::string out = bench_.path("parts" + precision);
-    arguments.insert(arguments.begin(), "run");
-    arguments.insert(arguments.end(), {"--out", out, "--checkpoint-every", "1 h"});
-    // One that a busy machine made slow says little of the next: earlier, until it meets the run.
-    double after = 0.7 * taken.count();
-    Answer answer = bench_.cuboct(arguments, after);
-    for (; answer.code == 0 && after > 0.1; after *= 0.7) answer = bench_.cuboct(arguments, after);
-    int interrupts = 0;
-    arguments.emplace_back("--resume");
-    for (; answer.code == 1 && interrupts < 100; ++interrupts) {
-      EXPECT_EQ(answer.err, "interrupted; the same command with --resume goes on at step " +
-                                std::to_string(read_trace(out + "/trace.h5").steps()) + "\n");
-      answer = bench_.cuboct(arguments, after + 0.2 * interrupts);
+    const auto arguments = [&](uint64_t steps) {
+      return std::vector<std::string>{
+          "scenes/coupon.toml",  "--engine",      "gpu", "--precision", precision, "--quiet", "--steps",
+          std::to_string(steps), "--frame-every", "200", "--anyway"};
+    };
+    const auto part = [&](uint64_t steps, bool resumes, const test::Condition& interrupts) {
+      std::vector<std::string> words = arguments(steps);
+      words.insert(words.begin(), "run");
+      words.insert(words.end(), {"--out", out, "--checkpoint-every", "1 h"});
+      if (resumes) words.emplace_back("--resume");
+      return bench_.cuboct(words, interrupts);
+    };
+    // Each goes on until it has left another frame than those before; none would ever end.
+    uint64_t steps = 0;
+    for (const bool resumes : {false, true}) {
+      const Answer cut =
+          part(10'000'000, resumes, test::there(fmt::format("{}/frames_{:06}.vtp", out, steps / 200 + 2)));
+      ASSERT_EQ(cut.code, 1) << cut.err;
+      steps = read_trace(out + "/trace.h5").steps();
+      EXPECT_EQ(cut.err,
+                fmt::format("interrupted; the same command with --resume goes on at step {}\n", steps));
     }
-    EXPECT_GT(interrupts, 0);
+    steps += 250;
+    const Answer answer = part(steps, true, {});
     ASSERT_EQ(answer.code, 0) << answer.err;
-    const Trace parts = read_trace(out + "/trace.h5");
+    const Trace parts = read_trace(out + "/trace.h5"), whole = run("whole" + precision, arguments(steps));
     EXPECT_EQ(whole.state_hash, parts.state_hash);
     EXPECT_EQ(whole.frames, parts.frames);
     ASSERT_EQ(whole.bodies.size(), parts.bodies.size());

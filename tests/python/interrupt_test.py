@@ -2,10 +2,9 @@
 """Ctrl-C: KeyboardInterrupt after a whole step, and all goes on."""
 import os
 import signal
-import threading
 import unittest
 
-from support import main, scene_file
+from support import interrupt_after, main, scene_file
 
 import cuboct
 
@@ -14,11 +13,10 @@ FOREVER = 10**9
 
 class Interrupt(unittest.TestCase):
     def interrupted(self, call):
-        timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
+        interrupt = interrupt_after(0.3)
         with self.assertRaises(KeyboardInterrupt):
             call()
-        timer.join()
+        interrupt.join()
 
     def test_stepping(self):
         for engine in ("golden", "lattice", "reference"):

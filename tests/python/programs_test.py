@@ -6,13 +6,11 @@ usage: programs_test.py ROOT DIRECTORY_OF_CUBOCT FAKE_ENGINE
 import os
 import re
 import shutil
-import signal
 import sys
 import tempfile
-import threading
 import unittest
 
-from support import main, scene_file
+from support import interrupt_after, main, scene_file
 
 import cuboct
 
@@ -134,11 +132,10 @@ class Machine(unittest.TestCase):
     def test_ctrl_c_ends_a_piece(self):
         scene = scene_file("lj_block.toml")
         stepped = cuboct.Simulation(scene, "systemc", probe_every=0)
-        timer = threading.Timer(1, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
+        interrupt = interrupt_after(1)
         with self.assertRaises(KeyboardInterrupt):
             stepped.step(10**6)
-        timer.join()
+        interrupt.join()
         self.assertGreater(stepped.steps, 0)
         stepped.step(2)
         golden = cuboct.Simulation(scene, "lattice", probe_every=0)

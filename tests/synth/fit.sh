@@ -94,7 +94,7 @@ grep -qx "refused.dir/mine/fit: cannot be made, as $work/refused.dir/mine is no 
 # An interrupt while yosys works.
 "$cuboct" emit lone.toml --arch narrow.toml --fit hx8k --out stopped > printed 2> said &
 child=$!
-for _ in $(seq 100); do
+for _ in $(seq 6000); do
   pgrep -P $child yosys > found && break
   sleep 0.1
 done

@@ -61,7 +61,7 @@ grep -q '^Fmax  *not known: not placed$' wide/synth/up5k/pipe/table.txt || fail 
 # An interrupt while yosys works.
 "$cuboct" synth wide --target hx8k > printed 2> said &
 child=$!
-for _ in $(seq 100); do
+for _ in $(seq 6000); do
   ls wide/synth/hx8k/*/yosys.log > found 2>&1 && break
   sleep 0.1
 done
