@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "model/base/guarded_reader.h"
+#include "model/base/standard_streams.h"
 #include "model/mesh/stated_unit.h"
 #include "model/mesh/triangle_file.h"
 
@@ -189,6 +190,7 @@ void read(const std::string& file, const std::string& result) {
 }  // namespace cuboct
 
 int main(int count, char** words) try {
+  cuboct::fill_standard_descriptors();
   if (count != 5) throw std::runtime_error("usage: cuboct-read-mesh FILE RESULT SECONDS MEGABYTES");
   cuboct::take_limits({std::stoull(words[3]), std::stoull(words[4])});
   cuboct::read(words[1], words[2]);

@@ -186,7 +186,7 @@ TEST(Command, CallsAFileOfAnotherKindWhatItIs) {
   };
   const std::vector<Mistaken> all{
       {{"run", "scenes/studies/coupon.toml"},
-       "scenes/studies/coupon.toml:4:1: this is a study of settings, not a scene",
+       "scenes/studies/coupon.toml:4:9: this is a study of settings, not a scene",
        "'cuboct explore scenes/studies/coupon.toml' takes it"},
       {{"check", "scenes/studies/machines_coupon.toml"},
        "this is a study of machines, not a scene",

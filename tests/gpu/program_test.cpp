@@ -260,9 +260,10 @@ TEST_F(GpuProgram, OfALongerStepIsBeyondTheBoundOfPositions) {
 }
 
 TEST_F(GpuProgram, EndsEarlyWhenItIsAsked) {
-  const Answer answer = bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--quiet",
-                                       "--out", bench_.path("run"), "--hash-every", "1000000"},
-                                      1.5);
+  const Answer answer =
+      bench_.cuboct({"run", kBlock, "--engine", "gpu", "--steps", "100000000", "--quiet", "--out",
+                     bench_.path("run"), "--hash-every", "1000000", "--frame-every", "1000", "--anyway"},
+                    test::there(bench_.path("run/frames_000001.vtp")));
   EXPECT_EQ(answer.code, 1);
   EXPECT_EQ(answer.err, "interrupted\n");
   const Trace trace = read_trace(bench_.path("run") + "/trace.h5");
