@@ -159,7 +159,7 @@ Items resolve(const Loaded& loaded) {
         fmt::format("of law {}", n + 1), rule.errors[n].worst_force, "N",
         fmt::format("at {:.4g} m; {:.2g} of its largest force", rule.errors[n].at, rule.errors[n].relative));
   add_looser(items, scene, plan);
-  if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
+  if (const auto warnings = warnings_of(loaded, false); !warnings.empty()) add_warnings(items, warnings, {});
   const auto beats = [](int count) { return fmt::format("{} beat{}", count, count == 1 ? "" : "s"); };
   items.add("halo record", plan.words.halo_bits, "bit", beats(plan.words.halo_beats));
   items.add("particle record", plan.words.particle_bits, "bit", beats(plan.words.migrate_beats));
@@ -213,10 +213,15 @@ Items physics(const Loaded& loaded) {
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
-  if (rounds_of(scene.rule) != nullptr) return items;
+  const bool real = rounds_of(scene.rule) != nullptr;
+  const std::vector<std::string> warnings = warnings_of(loaded, real);
+  if (real) {
+    if (!warnings.empty()) add_warnings(items, warnings, {});
+    return items;
+  }
   items.add("machine", fmt::format("{} node{}; --machine tells formats, records and cycles", plan.nodes(),
                                    plan.nodes() == 1 ? "" : "s"));
-  if (!plan.warnings.empty()) add_warnings(items, plan.warnings, {});
+  if (!warnings.empty()) add_warnings(items, warnings, {});
   return items;
 }
 

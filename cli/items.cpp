@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/base/json.h"
 #include "model/base/text.h"
@@ -23,7 +24,8 @@ void Items::add(const std::string& name, int64_t value, const std::string& unit,
 }
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
-  items_.push_back({name, fmt::format("{:.6g}", value), cuboct::json(value), unit, note, false});
+  items_.push_back({name, std::isnan(value) ? "not there" : fmt::format("{:.6g}", value), cuboct::json(value),
+                    unit, note, false});
 }
 
 void Items::add_range(const std::string& name, double last, double smallest, double largest,

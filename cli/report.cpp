@@ -69,19 +69,23 @@ std::string figure(const std::vector<Series>& series, const std::string& x, cons
 }
 
 // The figures of a tension test beside those of the datasheet, where the scene gives one.
-std::string tension_table(const Tension& tension, const Probe& probe) {
-  const TensionFigures figures = tension_figures(tension.strain->value, tension.stress->value);
+std::string tension_table(const Tension& tension, const Scene& scene, const Probe& probe) {
+  const TensionFigures figures = tension_figures(tension_test(tension, scene, probe));
   const Datasheet sheet = probe.datasheet.value_or(Datasheet{});
   std::string rows;
-  const auto row = [&](const char* name, std::optional<double> measured, double given, double unit,
-                       const char* unit_name) {
-    if (!measured && given == 0) return;
+  const auto row = [&](const char* name, const CurveFigure& measured, double given, double unit,
+                       const char* unit_name, const char* how = "") {
     const auto text = [&](double value) { return fmt::format("{:.3g} {}", value / unit, unit_name); };
-    rows += fmt::format("<tr><th>{}</th><td>{}</td>{}</tr>\n", name, measured ? text(*measured) : "–",
+    const std::string found =
+        measured.value ? fmt::format("{} ± {:.1g}{}</td><td>{:.3g} to {:.3g} %", text(*measured.value),
+                                     measured.error / unit, how, 100 * measured.from, 100 * measured.to)
+                       : fmt::format("not there</td><td>{}", html_text(measured.why));
+    rows += fmt::format("<tr><th>{}</th><td>{}</td>{}</tr>\n", name, found,
                         probe.datasheet ? "<td>" + (given > 0 ? text(given) : "–") + "</td>" : "");
   };
   row("modulus", figures.modulus, sheet.modulus, 1e9, "GPa");
-  row("strength", figures.strength, sheet.strength, 1e6, "MPa");
+  row("strength", figures.strength, sheet.strength, 1e6, "MPa",
+      figures.rises_at_end ? ", still rising at the end" : "");
   row("strain at the strength", figures.yield_strain, sheet.yield_strain, 0.01, "%");
   row("strain at break", figures.strain_at_break, sheet.strain_at_break, 0.01, "%");
   const std::string given =
@@ -89,15 +93,17 @@ std::string tension_table(const Tension& tension, const Probe& probe) {
           ? "<th>datasheet" + (sheet.source.empty() ? "" : ": " + html_text(sheet.source)) + "</th>"
           : "";
   return fmt::format(
-      "<div class=\"wide\"><table>\n<tr><th></th><th>measured</th>{}</tr>\n{}</table></div>\n"
-      "<p class=\"note\">Modulus: slope up to a strain of 0.5 %. Strength and break: of the running mean "
-      "over {} "
-      "readings; broken where it stays below a tenth of the strength.</p>\n",
+      "<div class=\"wide\"><table>\n<tr><th></th><th>measured</th><th>read from strains</th>{}</tr>\n{}"
+      "</table></div>\n<p class=\"note\">Modulus: slope of the straight part, of means over a round trip of "
+      "waves, behind the first one. Strength and break: of the running mean over {} readings; broken where "
+      "it "
+      "stays below a tenth of the strength. ±: standard error, or the spacing of readings.</p>\n",
       given, rows, tension_window(tension.strain->value.size()));
 }
 
 // `marks`: the steps of the frames that are pictured.
-std::string stress_strain(const Tension& tension, const Probe& probe, const std::vector<uint64_t>& marks) {
+std::string stress_strain(const Tension& tension, const Scene& scene, const Probe& probe,
+                          const std::vector<uint64_t>& marks) {
   const size_t window = tension_window(tension.strain->value.size());
   Series readings, mean;
   readings.faint = true;
@@ -110,7 +116,7 @@ std::string stress_strain(const Tension& tension, const Probe& probe, const std:
     mean.marks.emplace_back(mean.x[at], mean.y[at]);
   }
   return figure({readings, mean}, "strain of the gauge length, %", "stress, MPa") +
-         tension_table(tension, probe);
+         tension_table(tension, scene, probe);
 }
 
 // Curves over time, in one figure; `names`: with what the key calls them. `change`: since the first sample.
@@ -169,8 +175,9 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
   for (const Probe& probe : loaded.scene.probes) {
     if (probe.kind == Probe::Kind::stress_strain) {
       if (const auto tension = tension_of(trace.curves, probe.name))
-        section("Stress and strain: " + probe.name,
-                stress_strain(*tension, probe, &probe == first ? marks : std::vector<uint64_t>()));
+        section(
+            "Stress and strain: " + probe.name,
+            stress_strain(*tension, loaded.scene, probe, &probe == first ? marks : std::vector<uint64_t>()));
       continue;
     }
     if (probe.kind == Probe::Kind::crack) {
@@ -200,11 +207,11 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
   return out;
 }
 
-// `of_plan`: as `cuboct check` tells them.
-std::string warning_section(const std::vector<std::string>& of_plan, const Trace& trace) {
-  if (of_plan.empty() && trace.findings.empty() && !trace.stop) return "";
+// `before`: as `cuboct check` tells them.
+std::string warning_section(const std::vector<std::string>& before, const Trace& trace) {
+  if (before.empty() && trace.findings.empty() && !trace.stop) return "";
   std::string out = "<h2>Warnings</h2>\n<ul class=\"bad\">\n";
-  for (const std::string& text : of_plan) out += "<li>warning: " + html_text(text) + "</li>\n";
+  for (const std::string& text : before) out += "<li>warning: " + html_text(text) + "</li>\n";
   for (const Finding& finding : trace.findings) out += "<li>warning: " + html_text(finding.text) + "</li>\n";
   if (trace.stop) out += "<li>stopped: " + html_text(trace.stop->text) + "</li>\n";
   return out + "</ul>\n";
@@ -359,8 +366,7 @@ void write_report(const std::string& directory, const std::string& out) {
                       ? fmt::format(", <b class=\"bad\">{} after {} of {} steps</b>", trace.ended(),
                                     trace.steps(), *trace.asked)
                       : "");
-  // A run in real numbers, which has no hashes, needs no widths.
-  html += warning_section(trace.state_hash.empty() ? std::vector<std::string>() : plan.warnings, trace);
+  html += warning_section(warnings_of(loaded, trace.state_hash.empty()), trace);
   std::vector<uint64_t> marks;
   if (shots.size() > 0) {
     const std::optional<size_t> onset = shots.crack_onset();

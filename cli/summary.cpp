@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cli/advice.h"
+#include "model/analysis/motion_warnings.h"
 #include "model/analysis/tension.h"
 #include "model/run/static_engine.h"
 #include "model/trace/cycles.h"
@@ -38,21 +40,34 @@ void add_speed(Items& items, const Scene& scene, const Trace& trace, double part
       items.add("speed", value * particles / trace.seconds, "particles/s", "in evaluations of forces");
 }
 
+constexpr double kNotThere = std::numeric_limits<double>::quiet_NaN();
+
 void add_tension(Items& items, const Scene& scene, const std::vector<Curve>& curves) {
   for (const Probe& probe : scene.probes) {
     if (probe.kind != Probe::Kind::stress_strain) continue;
     const auto tension = tension_of(curves, probe.name);
     if (!tension) continue;
-    const TensionFigures figures = tension_figures(tension->strain->value, tension->stress->value);
+    const TensionFigures figures = tension_figures(tension_test(*tension, scene, probe));
     const Datasheet sheet = probe.datasheet.value_or(Datasheet{});
-    const auto add = [&](const char* name, double value, double given, const char* unit) {
-      items.add(probe.name + "." + name, value, unit,
-                given > 0 ? fmt::format("datasheet: {:g} {}", given, unit) : "");
+    const auto add = [&](const char* name, const CurveFigure& figure, double given, const char* unit,
+                         const std::string& how) {
+      const std::string beside =
+          given > 0 ? fmt::format("; datasheet: {:g}{}{}", given, *unit ? " " : "", unit) : "";
+      if (figure.value)
+        items.add(probe.name + "." + name, *figure.value, unit,
+                  fmt::format("+- {:.2g}; {}{}", figure.error, how, beside));
+      else
+        items.add(probe.name + "." + name, kNotThere, "", figure.why + beside);
     };
-    if (figures.modulus) add("modulus", *figures.modulus, sheet.modulus, "Pa");
-    add("strength", figures.strength, sheet.strength, "Pa");
-    add("yield_strain", figures.yield_strain, sheet.yield_strain, "");
-    if (figures.strain_at_break) add("strain_at_break", *figures.strain_at_break, sheet.strain_at_break, "");
+    const size_t window = tension_window(tension->strain->value.size());
+    const std::string mean = fmt::format("mean of {} reading{}{}", window, window == 1 ? "" : "s",
+                                         figures.rises_at_end ? "; it still rises at the end" : "");
+    add("modulus", figures.modulus, sheet.modulus, "Pa",
+        fmt::format("slope from {:.3g} to {:.3g} of strain", figures.modulus.from, figures.modulus.to));
+    add("strength", figures.strength, sheet.strength, "Pa", mean);
+    add("yield_strain", figures.yield_strain, sheet.yield_strain, "", "where the strength is");
+    add("strain_at_break", figures.strain_at_break, sheet.strain_at_break, "",
+        "from there on below a tenth of the strength");
   }
 }
 
@@ -95,10 +110,17 @@ void add_end(Items& items, const Trace& trace) {
   items.add("ended", trace.ended(), where);
 }
 
-void add_warnings(Items& items, const std::vector<std::string>& of_plan,
+std::vector<std::string> warnings_of(const Loaded& loaded, bool real) {
+  std::vector<std::string> warnings = motion_warnings(loaded.scene);
+  if (!real)
+    warnings.insert(warnings.end(), loaded.setup.plan.warnings.begin(), loaded.setup.plan.warnings.end());
+  return warnings;
+}
+
+void add_warnings(Items& items, const std::vector<std::string>& before,
                   const std::vector<Finding>& findings) {
   std::vector<Items> list;
-  for (const std::string& text : of_plan) list.emplace_back().add("text", text);
+  for (const std::string& text : before) list.emplace_back().add("text", text);
   for (const Finding& f : findings) {
     Items& item = list.emplace_back();
     item.add("failure", to_string(f.failure));
@@ -150,8 +172,8 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
     items.add("plan hash", fmt::format("{:016x}", trace.plan_hash));
     if (!trace.state_hash.empty()) items.add("state hash", fmt::format("{:016x}", trace.state_hash.back()));
   }
-  const std::vector<std::string> of_plan = real ? std::vector<std::string>() : plan.warnings;
-  if (trace.watched || !of_plan.empty()) add_warnings(items, of_plan, trace.findings);
+  const std::vector<std::string> before = warnings_of(loaded, real);
+  if (trace.watched || !before.empty()) add_warnings(items, before, trace.findings);
   if (trace.stop) {
     if (trace.watched)
       items.add("last look", fmt::format("step {}: {}", *trace.watched,

@@ -20,9 +20,11 @@ std::string reached_text(const Trace& trace);
 // How the run ended, and where if that was too soon.
 void add_end(Items& items, const Trace& trace);
 
-// "warning: ..." lines and the array "warnings". `of_plan`: what the scene or the arch asks for in vain.
-void add_warnings(Items& items, const std::vector<std::string>& of_plan,
-                  const std::vector<Finding>& findings);
+// What scene, arch and plan ask for in vain; `real`: of a run in real numbers, which has no formats.
+std::vector<std::string> warnings_of(const Loaded& loaded, bool real);
+
+// "warning: ..." lines and the array "warnings". `before`: warnings_of, told before the run.
+void add_warnings(Items& items, const std::vector<std::string>& before, const std::vector<Finding>& findings);
 
 // `real`: of an engine in real numbers.
 Items summarise(const Loaded& loaded, const Recorded& run, bool real);

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "cli/templates.h"
+#include "model/analysis/motion_warnings.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
 #include "model/base/process.h"
@@ -144,7 +145,9 @@ py::dict check(const Sources& sources) {
   out["cell_edge"] = plan.rule.cell_edge;
   out["nodes"] = plan.nodes();
   out["plan_hash"] = hex(plan.hash);
-  out["warnings"] = plan.warnings;
+  std::vector<std::string> warnings = motion_warnings(scene);
+  warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());
+  out["warnings"] = warnings;
   return out;
 }
 

@@ -99,6 +99,29 @@ TEST(Check, TellsPhysics) {
   EXPECT_NE(gas.find("repeats along xyz, 256 particles of mass 1, 1.11 apart\n"), std::string::npos) << gas;
 }
 
+// The bar of the template, whose waves travel at 1.46 km/s: `check`, the run and its report say it.
+TEST(Check, WarnsOfGripsThatOutrunWaves) {
+  const Bench bench(false);
+  const std::string path = bench.path("bar.toml");
+  ASSERT_EQ(bench.cuboct({"new", path, "--like", "tension"}).code, 0);
+  std::string text = contents(path);
+  const auto pulled_at = [&](const std::string& speed) {
+    const size_t at = text.find("velocity = \"["), end = text.find(',', at);
+    text.replace(at, end - at, "velocity = \"[" + speed);
+    std::ofstream(path) << text;
+    return bench.cuboct({"check", path}).out;
+  };
+  const std::string warning =
+      "warning: 'matter/pulled' is moved at 4000 m/s, 2.7 times as fast as waves travel, 1459 m/s: it tears "
+      "off, or through, as nothing can follow\n";
+  EXPECT_NE(pulled_at("4000").find(warning), std::string::npos) << pulled_at("4000");
+  for (const char* engine : {"lattice", "reference"}) {
+    const Answer ran = bench.cuboct({"run", path, "--engine", engine, "--steps", "60", "--quiet"});
+    EXPECT_NE(ran.out.find(warning), std::string::npos) << ran.out;
+  }
+  EXPECT_EQ(pulled_at("1400").find("warning"), std::string::npos);
+}
+
 TEST(Check, NamesItInJsonToo) {
   EXPECT_EQ(not_built({"check", "scenes/coupon.toml", "--json"}),
             R"(  "not_built": {"value": "pair scales, PD controllers, masses"},
