@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "cli/answer.h"
 #include "cli/budget.h"
 #include "cli/command.h"
+#include "model/analysis/measure.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
@@ -47,6 +49,16 @@ Figure figure_of(const Options& options, const Scene& scene) {
   }
   return read_figure(parse_config(
       fmt::format("kind = {}\ncurve = {}\n", toml_string(kind), toml_string(curve)), "--figure"));
+}
+
+// Before any run: a curve that no probe makes.
+void check_curves(const Figure& figure, const Scene& scene) {
+  try {
+    value_of(figure, ProbeMeter(scene.probes, scene.periodic, scene.body.x).curves(), scene.rule.dt);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error&) {  // they have no readings yet
+  }
 }
 
 std::string length_text(double length, bool reduced) {
@@ -99,6 +111,7 @@ int find(const Options& options) {
   study::check_refinable(question.base);
   const Scene scene = parse_scene(question.base.scene_text, question.base.scene_path);
   question.figure = figure_of(options, scene);
+  check_curves(question.figure, scene);
   question.engine = options.engine;
   question.error = read_error_budget(options.error);
   question.most_particles = options.most;
@@ -110,11 +123,13 @@ int find(const Options& options) {
   const DirectoryLock lock(out, "cuboct pitch");
   const bool reduced = study::is_reduced(question.base);
   const Answer& answer = options.answer;
-  answer.say("{} of {}\n{:<12}{:>11}  {:<28}{:<10}{}\n", question.figure.name,
-             line_text(question.figure.curve), "pitch", "particles", "value", "off by", "host time");
   study::PitchAnswer found;
+  bool headed = false;
   try {
     found = study::find_pitch(question, out, [&](const study::PitchAnswer& so_far) {
+      if (!std::exchange(headed, true))
+        answer.say("{} of {}\n{:<12}{:>11}  {:<28}{:<10}{}\n", question.figure.name,
+                   line_text(question.figure.curve), "pitch", "particles", "value", "off by", "host time");
       const std::vector<study::PitchRun>& runs = so_far.runs;
       double low = runs.back().value, high = low, seconds = 0;
       for (auto run = runs.rbegin(); run != runs.rend() && run->pitch == runs.back().pitch; ++run)

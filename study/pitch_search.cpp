@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "model/analysis/tension.h"
+#include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/json.h"
 #include "model/trace/trace_head.h"
@@ -63,6 +65,21 @@ std::string line_of(const PitchRun& run) {
                       {"seconds", json(run.seconds)}});
 }
 
+// A modulus for which nobody names a window comes from where the curve is straight, as a run's summary has
+// it.
+double figure_of(const Figure& figure, const Scene& scene, const std::vector<Curve>& curves) {
+  const auto probe = std::ranges::find_if(scene.probes, [&](const Probe& one) {
+    return figure.curve == one.name + ".stress" && figure.against == one.name + ".strain";
+  });
+  const bool whole = figure.kind == Figure::Kind::modulus && figure.from == 0 && figure.to == 0;
+  const auto tension =
+      whole && probe != scene.probes.end() ? tension_of(curves, probe->name) : std::optional<Tension>();
+  if (!tension) return value_of(figure, curves, scene.rule.dt);
+  const CurveFigure modulus = tension_figures(tension_test(*tension, scene, *probe)).modulus;
+  if (!modulus.value) throw std::runtime_error(fmt::format("{}: {}", figure.name, modulus.why));
+  return *modulus.value;
+}
+
 PitchRun run_at(const PitchQuestion& q, const Case& c, int shift) {
   const Clock::time_point begin = Clock::now();
   const Trace trace = probe_run(c.scene, c.arch, q.engine, q.threads);
@@ -75,7 +92,7 @@ PitchRun run_at(const PitchQuestion& q, const Case& c, int shift) {
   run.unit = q.figure.unit(trace.curves);
   run.particle_steps = particle_steps(c.scene, trace);
   try {
-    run.value = value_of(q.figure, trace.curves, c.scene.rule.dt);
+    run.value = figure_of(q.figure, c.scene, trace.curves);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}: {}", at, error.what()));
   }
@@ -228,11 +245,24 @@ PitchAnswer find_pitch(const PitchQuestion& question, const std::string& directo
     if (!answer.runs.empty() && static_cast<double>(answer.runs.back().particles) * std::pow(kFiner, -3) >
                                     static_cast<double>(question.most_particles))
       return answer;
+    std::vector<Case> cases;
+    uint64_t most = 0;
+    for (int shift = 0; shift < packings.shifts(); ++shift) {
+      cases.push_back(resolve(question.base, packings.at(pitch, shift)));
+      most = std::max<uint64_t>(most, cases.back().scene.body.size());
+    }
+    if (most > question.most_particles) {
+      if (pitch < packings.first()) return answer;
+      throw InputError(fmt::format("the scene's own pitch makes {} particles: more than the {} that are "
+                                   "allowed",
+                                   most, question.most_particles),
+                       fmt::format("--particles {}, or a larger pitch in the scene", most));
+    }
     for (int shift = 0; shift < packings.shifts(); ++shift) {
       const auto was = std::ranges::find_if(
           known, [&](const PitchRun& run) { return run.pitch == pitch && run.shift == shift; });
       if (was == known.end()) {
-        answer.runs.push_back(run_at(question, resolve(question.base, packings.at(pitch, shift)), shift));
+        answer.runs.push_back(run_at(question, cases[static_cast<size_t>(shift)], shift));
         kept.add(line_of(answer.runs.back()));
         kept.save();
       } else {

@@ -73,7 +73,8 @@ struct PitchAnswer {
 };
 
 // Results are kept in `directory`: the same question goes on with those that are missing. `see` is called
-// after the runs of each pitch. Throws Interrupted, InputError, and std::runtime_error where a run ends early
+// after the runs of each pitch. No run has more particles than are allowed: InputError where the scene's own
+// pitch makes more. Throws Interrupted, InputError, and std::runtime_error where a run ends early
 // or has no such figure.
 PitchAnswer find_pitch(const PitchQuestion& question, const std::string& directory,
                        const std::function<void(const PitchAnswer&)>& see);

@@ -49,6 +49,7 @@ std::vector<uint64_t> kept_samples(const TimeGrid& grid) {
 struct Climb {
   Rung rung;
   Run run;
+  std::string lacks;  // the first figure that the run does not hold, and why; empty: it holds all
 };
 
 Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sample, uint64_t until,
@@ -73,8 +74,9 @@ Climb climb(const Study& study, Case c, const TimeGrid& grid, uint64_t per_sampl
   for (const Figure& figure : study.figures) {
     try {
       result.rung.figures.push_back(value_of(figure, result.run.curves, result.run.dt));
-    } catch (const std::runtime_error&) {
+    } catch (const std::runtime_error& error) {
       result.rung.figures.push_back(kNone);
+      if (result.lacks.empty()) result.lacks = error.what();
     }
   }
   return result;
@@ -120,6 +122,10 @@ void refine(const Study& study, const Case& c, int threads, Truth& truth,
   while (!ended()) {
     const size_t k = truth.rungs.size();
     Climb now = climb(study, c, truth.grid, first << k, truth.grid.samples, threads);
+    if (!now.lacks.empty())
+      throw InputError(
+          fmt::format("{}: the run in doubles does not hold a figure: {}", study.path, now.lacks),
+          "another window, or a longer run");
     if (k > 0) {
       now.rung.change = change_between(truth.rungs.back().figures, now.rung.figures);
       now.rung.trajectory =
@@ -222,10 +228,6 @@ Truth make_truth(const Study& study, int jobs, Truth begun, const std::function<
   }
   refine(study, c, threads, truth, save);
   lengthen(study, c, threads, truth);
-  for (size_t k = 0; k < study.figures.size(); ++k)
-    if (!std::isfinite(truth.figures[k]))
-      truth.notes.push_back(
-          fmt::format("the run in doubles does not hold the figure '{}'", study.figures[k].name));
   return truth;
 }
 

@@ -34,11 +34,29 @@ const Curve& curve_named(const std::string& name, const std::vector<Curve>& curv
   throw std::runtime_error(fmt::format("{}: {}", figure.name, why));
 }
 
+// Where the window lies beside all that there is, for who chose it.
+std::string window_text(const std::string& of, const Figure& figure, const std::vector<double>& all,
+                        size_t inside) {
+  std::string text = fmt::format("{} samples of {} {}", inside, of,
+                                 figure.to > 0 ? fmt::format("between {:g} and {:g}", figure.from, figure.to)
+                                               : fmt::format("from {:g} on", figure.from));
+  if (!all.empty())
+    text += fmt::format(", of {} from {:.4g} to {:.4g}", all.size(), std::ranges::min(all),
+                        std::ranges::max(all));
+  return text;
+}
+
 // Samples of a curve inside the window.
 struct Samples {
   std::vector<double> at;  // s, or values of `against`
   std::vector<double> value;
 };
+
+std::vector<double> times_of(const Curve& curve, double dt) {
+  std::vector<double> times;
+  for (const uint64_t step : curve.step) times.push_back(static_cast<double>(step) * dt);
+  return times;
+}
 
 Samples in_time(const Figure& figure, const Curve& curve, double dt) {
   Samples in;
@@ -71,8 +89,8 @@ double modulus(const Figure& figure, const std::vector<Curve>& curves) {
     in.value.push_back(stress.value[k]);
   }
   if (in.at.size() < 2 || std::ranges::max(in.at) <= std::ranges::min(in.at))
-    cannot(figure, fmt::format("{} samples of {} between {} and {}: at least 2 that differ are needed",
-                               in.at.size(), figure.against, figure.from, figure.to));
+    cannot(figure, window_text(figure.against, figure, strain.value, in.at.size()) +
+                       ": at least 2 that differ are needed");
   return slope(in);
 }
 
@@ -104,7 +122,9 @@ double frequency(const Figure& figure, const Curve& curve, double dt) {
       std::abs((s.at.back() - s.at[s.at.size() - 2]) - (s.at[1] - s.at[0])) > 0.01 * (s.at[1] - s.at[0]))
     s.at.pop_back(), s.value.pop_back();
   const size_t n = s.value.size();
-  if (n < 16) cannot(figure, fmt::format("{} samples of {}: at least 16 are needed", n, figure.curve));
+  if (n < 16)
+    cannot(figure, window_text("the times of " + figure.curve, figure, times_of(curve, dt), n) +
+                       ": at least 16 are needed");
   const double spacing = (s.at.back() - s.at.front()) / static_cast<double>(n - 1);
   double mean = 0;
   for (const double y : s.value) mean += y / static_cast<double>(n);
@@ -160,7 +180,8 @@ double break_time(const Figure& figure, const Curve& curve, double dt) {
 
 double mean(const Figure& figure, const Curve& curve, double dt) {
   const Samples s = in_time(figure, curve, dt);
-  if (s.value.empty()) cannot(figure, fmt::format("no samples of {} in the window", figure.curve));
+  if (s.value.empty())
+    cannot(figure, window_text("the times of " + figure.curve, figure, times_of(curve, dt), 0));
   double sum = 0;
   for (const double y : s.value) sum += y;
   return sum / static_cast<double>(s.value.size());

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "model/base/error.h"
 #include "study/measure_errors.h"
 #include "tests/study/small_study.h"
 
@@ -144,6 +145,25 @@ TEST(Truth, SaysThatSamplesDecideAFigure) {
   ASSERT_EQ(m.truth.notes.size(), 3U);
   EXPECT_TRUE(m.truth.notes[0].starts_with("mean changes by ")) << m.truth.notes[0];
   EXPECT_TRUE(m.truth.notes[1].starts_with("the truth has not converged")) << m.truth.notes[1];
+}
+
+// A study whose figure is not there has no error in any point.
+TEST(Truth, RefusesAFigureThatItDoesNotHold) {
+  const auto refusal = [](const std::string& figure) -> std::string {
+    try {
+      const Measured m("[truth]\nrungs = 2\n[[figure]]\n" + figure + "[[sweep]]\n");
+      return "none";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string window =
+      refusal("kind = \"mean\"\ncurve = \"energy.kinetic\"\nfrom = \"1 s\"\nto = \"2 s\"\n");
+  EXPECT_NE(window.find("the run in doubles does not hold a figure: mean: 0 samples of the times of "
+                        "energy.kinetic between 1 and 2, of 17 from 0 to "),
+            std::string::npos)
+      << window;
+  EXPECT_NE(window.find("\n  hint: another window, or a longer run"), std::string::npos) << window;
 }
 
 // A row of particles, 1.1 apart: each lengthening of the cutoff takes in more of them, the last one by 1e-8

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/pitch_search.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "model/base/error.h"
@@ -23,6 +24,27 @@ PitchQuestion question(double error) {
               .against = "tension.strain"};
   q.error = error;
   return q;
+}
+
+// Not one run has more than are allowed: each pitch is counted before it is run.
+TEST(PitchSearch, KeepsToTheParticlesThatAreAllowed) {
+  const SmallStudy files;
+  make_directory(files.path("out"));
+  PitchQuestion few = question(0.01);
+  const uint64_t most = resolve(few.base, {}).scene.body.size();
+  few.most_particles = most / 2;
+  try {
+    find_pitch(few, files.path("out"), [](const PitchAnswer&) { FAIL() << "it ran"; });
+    ADD_FAILURE() << "no refusal";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(fmt::format("more than the {} that are allowed", most / 2)),
+              std::string::npos)
+        << error.what();
+  }
+  // The next pitch may count more than 2 sqrt(2) times as many.
+  few.most_particles = 3 * most;
+  for (const PitchRun& run : find_pitch(few, files.path("out"), [](const PitchAnswer&) {}).runs)
+    EXPECT_LE(run.particles, few.most_particles);
 }
 
 // Limit 5, slope 2, and what is known of them by hand: four points of y = 5 x + 2 + e over x = 1/pitch = 1,

@@ -88,6 +88,29 @@ TEST(Figure, BreakTimeNeedsAPositiveMaximum) {
   EXPECT_EQ(refusal({"a", "N", {0, 1}, {0, -3}}), "it: a has no value above 0: the largest is 0");
 }
 
+// A window that holds nothing is told beside what there is.
+TEST(Figure, AnEmptyWindowIsToldBesideTheCurve) {
+  const std::vector<Curve> curves{made("a.stress", 101, 1, [](double t) { return t; }),
+                                  made("a.strain", 101, 1, [](double t) { return t / 2; })};
+  const auto refusal = [&](const Figure& of) -> std::string {
+    try {
+      return std::to_string(value_of(of, curves, kDt));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(
+      refusal(figure(Figure::Kind::modulus, "a.stress", 0.5, 0.9)),
+      "it: 0 samples of a.strain between 0.5 and 0.9, of 101 from 0 to 0.05: at least 2 that differ are "
+      "needed");
+  EXPECT_EQ(refusal(figure(Figure::Kind::mean, "a.stress", 7)),
+            "it: 0 samples of the times of a.stress from 7 on, of 101 from 0 to 0.1");
+  EXPECT_EQ(
+      refusal(figure(Figure::Kind::frequency, "a.stress", 0.09, 0.095)),
+      "it: 6 samples of the times of a.stress between 0.09 and 0.095, of 101 from 0 to 0.1: at least 16 are "
+      "needed");
+}
+
 TEST(Figure, MeanAndFinal) {
   const std::vector<Curve> curves{made("a", 101, 10, [](double t) { return t; })};
   EXPECT_NEAR(value_of(figure(Figure::Kind::mean, "a", 0.2, 0.4), curves, kDt), 0.3, 1e-12);
