@@ -29,6 +29,7 @@ struct Estimate {
   uint64_t load_steps = 0;  // of a static run: what follows is of one evaluation of forces; else 0
   double particle_steps = 0;
   double seconds = 0;  // 0: no rate is known for this engine
+  double reading = 0;  // of them for the readings of probes and energies
   double rate = 0;     // particle-steps/s of one thread that `seconds` counts with
   int threads = 1;
   double memory = 0;  // bytes; of it what grows with the steps:

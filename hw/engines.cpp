@@ -23,7 +23,7 @@ const std::vector<EngineRow>& engines() {
        .counts_if_asked = true,
        .hash_every = 100,
        .ranks = "cuboct-lattice",
-       .cost = {3e-9, 1.5e-9, true, 240, 1.5, 70}},
+       .cost = {3e-9, 1.5e-9, true, 320, 3.5, 70}},
       {.name = "systemc",
        .links = true,
        .cycles = true,

@@ -150,7 +150,9 @@ std::vector<Particle> LatticeEngine::Impl::everyone() const {
   std::vector<Particle> all;
   if (!shared()) {
     all.resize(count_);
-    for_each_index([&](uint32_t p) { all[particles_.id_of(p)] = particle(p); });
+    for_each_part(blocks_.size(), threads_, [&](size_t b, int) {
+      for (uint32_t p = blocks_[b].begin; p < blocks_[b].end; ++p) all[particles_.id_of(p)] = particle(p);
+    });
     return all;
   }
   std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
@@ -160,6 +162,40 @@ std::vector<Particle> LatticeEngine::Impl::everyone() const {
   all.resize(count_);
   for (const Bytes& bytes : from)
     for_each_of<Particle>(bytes, [&](const Particle& one) { all[one.id] = one; });
+  return all;
+}
+
+// Sums of the state at hand, on every rank; false where some pair does not fit.
+bool LatticeEngine::Impl::sum_pairs() {
+  refresh_lists();
+  clear_blocks();
+  sums_.resize(particles_.x[0].size());
+  Active active;
+  active.sums = sums_.data();
+  forces_and_update(active);
+  std::array<double, 1> failed{};
+  for (const Block& block : blocks_)
+    if (!block.pair_faults.empty()) failed[0] = 1;
+  if (shared()) options_.ranks->most(failed);
+  return failed[0] == 0;
+}
+
+std::vector<Int3> LatticeEngine::Impl::kicks() {
+  if (!summed_) summed_ = sum_pairs();
+  if (!summed_) return {};
+  std::vector<Int3> all(count_);
+  if (!shared()) {
+    for_each_index([&](uint32_t p) { all[particles_.id_of(p)] = sums_[p]; });
+    return all;
+  }
+  struct Kick {
+    uint32_t id;
+    Int3 sum;
+  };
+  std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
+  for_each_index([&](uint32_t p) { append(to[0], Kick{particles_.id_of(p), sums_[p]}); });
+  const std::vector<Bytes> from = options_.ranks->exchange(to);
+  for (const Bytes& bytes : from) for_each_of<Kick>(bytes, [&](const Kick& one) { all[one.id] = one.sum; });
   return all;
 }
 
@@ -178,6 +214,8 @@ const LatticeCounters& LatticeEngine::counters() const { return impl_->counters_
 int LatticeEngine::threads() const { return impl_->threads_; }
 const std::string& LatticeEngine::simd() const { return impl_->kernels_.name; }
 std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_; }
+
+std::vector<Int3> LatticeEngine::kicks() { return impl_->kicks(); }
 
 State LatticeEngine::state() const { return {impl_->step_, impl_->everyone()}; }
 

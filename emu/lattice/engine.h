@@ -54,8 +54,11 @@ class LatticeEngine {
   void step();
 
   uint64_t step_count() const;
-  uint32_t size() const;                                                      // particles
-  State state() const;                                                        // sorted by id
+  uint32_t size() const;  // particles
+  State state() const;    // sorted by id
+  // By id, of all on rank 0: summed_kicks of the state, as the next step sums them. Empty where some kick
+  // does not fit its width: the next step fails.
+  std::vector<Int3> kicks();
   void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by cell, then slot; of
                                                                               // all, on rank 0
   uint64_t hash() const;                                                      // hash_of(lattice, state())

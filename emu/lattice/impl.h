@@ -32,7 +32,10 @@ struct LatticeEngine::Impl {
 
   // step.cpp
   void step();
+  void clear_blocks();
   void forces_and_update(const Active& active);
+  bool sum_pairs();
+  std::vector<Int3> kicks();
   std::vector<Crossing> all_crossings() const;
   RunError error(Fault fault, uint32_t cell, uint32_t id, int64_t number) const;
   void fail_if_any(std::vector<RunError> faults) const;
@@ -102,6 +105,10 @@ struct LatticeEngine::Impl {
   double near_floor_ = -1;                 // all groups were pruned with at least this skin
   double fastest_ = 0;                     // largest |v| after the last step, P+G fractional bits
   uint64_t listed_at_ = 0;                 // step
+
+  // By index, where somebody asked for them before the step: it updates by these.
+  std::vector<Int3> sums_;
+  bool summed_ = false;
 };
 
 }  // namespace cuboct::emu

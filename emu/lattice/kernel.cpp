@@ -265,6 +265,12 @@ HWY_INLINE Int3 whole(const double sums[3][kLanes], uint32_t lane) {
   return of;
 }
 
+HWY_NOINLINE void leave_sums(const V sum[3], Int3* to) {
+  double sums[3][kLanes];
+  for (int a = 0; a < 3; ++a) hn::StoreU(sum[a], d, sums[a]);
+  for (uint32_t l = 0; l < kLanes; ++l) to[l] = whole(sums, l);
+}
+
 // Lanes that are not free, or may not fit: one by one.
 HWY_NOINLINE void update_each(const KernelRule& rule, Particles& particles, uint32_t i, uint32_t lanes,
                               const Active& active, const V sum[3], Block& block) {
@@ -405,7 +411,10 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       take_ring(block, slot, at, sum);
       const uint32_t mine = lanes >> at & ((1u << kLanes) - 1);
       if (mine == 0) continue;
-      if (HWY_LIKELY(block.plain[k] != 0)) {
+      if (HWY_UNLIKELY(active.sums != nullptr)) {
+        const V sums[3] = {sum[0], sum[1], sum[2]};  // only these need an address
+        leave_sums(sums, active.sums + i);
+      } else if (HWY_LIKELY(block.plain[k] != 0)) {
         update(rule, particles, i, mine, active, sum, block, fastest2);
       } else {
         const V sums[3] = {sum[0], sum[1], sum[2]};  // only these need an address
@@ -416,11 +425,37 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
   block.fastest2 = std::max(block.fastest2, hn::GetLane(hn::MaxOfLanes(d, fastest2)));
 }
 
+void update_block(const KernelRule& rule, Particles& particles, const Active& active, const Int3* sums,
+                  Block& block) {
+  V fastest2 = hn::Zero(d);
+  for (uint32_t k = 0; k < block.groups(); ++k) {
+    const uint32_t g = block.first_group() + k, base = g * kGroup;
+    if (active.near != nullptr && !any_flag(active.near, particles, g)) continue;
+    uint32_t lanes = base + kGroup <= block.end ? 0xffu : (1u << (block.end - base)) - 1;
+    if (active.awake != nullptr) lanes &= awake_lanes(active.awake, particles, g);
+    for (uint32_t at = 0; at < kGroup; at += kLanes) {
+      const uint32_t mine = lanes >> at & ((1u << kLanes) - 1);
+      if (mine == 0) continue;
+      double summed[3][kLanes];
+      for (uint32_t l = 0; l < kLanes; ++l)
+        for (int a = 0; a < 3; ++a) summed[a][l] = static_cast<double>(sums[base + at + l][a]);
+      const V sum[3] = {hn::LoadU(d, summed[0]), hn::LoadU(d, summed[1]), hn::LoadU(d, summed[2])};
+      if (block.plain[k] != 0)
+        update(rule, particles, base + at, mine, active, sum, block, fastest2);
+      else
+        update_each(rule, particles, base + at, mine, active, sum, block);
+    }
+  }
+  block.fastest2 = std::max(block.fastest2, hn::GetLane(hn::MaxOfLanes(d, fastest2)));
+}
+
 template <bool kSimple>
 Kernels kernels_for(const KernelRule& rule, const char* name) {
   const auto of = [&]<Pairs kPairs>() {
-    return rule.damped ? Kernels{name, prune, across<kSimple, true, kPairs>, inside<kSimple, true, kPairs>}
-                       : Kernels{name, prune, across<kSimple, false, kPairs>, inside<kSimple, false, kPairs>};
+    return rule.damped ? Kernels{name, prune, across<kSimple, true, kPairs>, inside<kSimple, true, kPairs>,
+                                 update_block}
+                       : Kernels{name, prune, across<kSimple, false, kPairs>, inside<kSimple, false, kPairs>,
+                                 update_block};
   };
   if (!rule.first.empty()) return of.template operator()<Pairs::laws>();
   return rule.scaled ? of.template operator()<Pairs::scaled>() : of.template operator()<Pairs::alike>();

@@ -18,6 +18,7 @@ struct Active {
   const uint8_t* near = nullptr;   // pairs of its particles may be needed
   const uint8_t* awake = nullptr;  // its particles are updated
   uint8_t* changed = nullptr;      // by cell: set to 1 where a particle changed; null: nobody asks
+  Int3* sums = nullptr;            // by index: `inside` leaves the pairs' sums here and updates nothing
 
   // Particles of one cell may be in the blocks of several threads.
   void mark(uint32_t cell) const {
@@ -46,6 +47,8 @@ struct Kernels {
   void (*across)(const KernelRule&, const Particles&, const Active&, Edge&, Block&);
   // Pairs inside the block, then each group's update.
   void (*inside)(const KernelRule&, Particles&, const Active&, Block&);
+  // Each group's update alone, by the sums that `inside` has left.
+  void (*update)(const KernelRule&, Particles&, const Active&, const Int3* sums, Block&);
 };
 
 // Those that this machine runs and `rule` allows: the widest first; "portable", plain integers that fit every

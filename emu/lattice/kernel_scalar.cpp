@@ -123,8 +123,20 @@ void inside(const KernelRule& rule, Particles& particles, const Active& active, 
       const uint32_t p = g * kGroup + l;
       if (!work || p >= block.end || (active.awake != nullptr && active.awake[particles.cell[p]] == 0))
         continue;
-      update_one(rule, particles, p, sums[l], active, block);
+      if (active.sums != nullptr)
+        active.sums[p] = sums[l];
+      else
+        update_one(rule, particles, p, sums[l], active, block);
     }
+  }
+}
+
+void update(const KernelRule& rule, Particles& particles, const Active& active, const Int3* sums,
+            Block& block) {
+  for (uint32_t p = block.begin; p < block.end; ++p) {
+    if (active.near != nullptr && !any_flag(active.near, particles, p / kGroup)) continue;
+    if (active.awake != nullptr && active.awake[particles.cell[p]] == 0) continue;
+    update_one(rule, particles, p, sums[p], active, block);
   }
 }
 
@@ -164,6 +176,6 @@ void update_one(const KernelRule& rule, Particles& particles, uint32_t p, const 
   if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
 }
 
-Kernels scalar_kernels() { return {"portable", prune, across, inside}; }
+Kernels scalar_kernels() { return {"portable", prune, across, inside, update}; }
 
 }  // namespace cuboct::emu

@@ -90,6 +90,7 @@ bool LatticeEngine::Impl::crystal() const {
 
 void LatticeEngine::Impl::build() {
   if (listed_ && step_ - listed_at_ < kShortLife) skin_ = std::min(kMostSkin, skin_ * 1.3);
+  summed_ = false;  // particles may be stored anew
   wrap();
   if (shared())
     redistribute();

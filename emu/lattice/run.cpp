@@ -37,6 +37,7 @@ class Runner : public StateEngine {
 
  protected:
   State make_state() override { return engine_->state(); }
+  std::vector<Int3> make_kicks() override { return failed_ ? std::vector<Int3>() : engine_->kicks(); }
 
  private:
   void feed(const Scene& scene, const LatticeChoice& choice, CheckpointReader* from);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <tuple>
+#include <utility>
 
 #include "emu/lattice/impl.h"
 #include "model/base/error.h"
@@ -80,17 +81,24 @@ void LatticeEngine::Impl::forces_and_update(const Active& active) {
   });
 }
 
-void LatticeEngine::Impl::step() {
-  refresh_lists();
-  Active active;
-  if (quiet_) active = quiet_->next();
+void LatticeEngine::Impl::clear_blocks() {
   for (Block& block : blocks_) {
     block.crossings.clear();
     block.pair_faults.clear();
     block.update_faults.clear();
     block.fastest2 = 0;
   }
-  forces_and_update(active);
+}
+
+void LatticeEngine::Impl::step() {
+  refresh_lists();
+  Active active;
+  if (quiet_) active = quiet_->next();
+  clear_blocks();
+  if (std::exchange(summed_, false))
+    for_each_block([&](Block& block) { kernels_.update(rule_, particles_, active, sums_.data(), block); });
+  else
+    forces_and_update(active);
 
   // The largest speed, and whether some rank met a fault of each kind.
   std::array<double, 3> most{};

@@ -7,8 +7,10 @@
 #include <numeric>
 #include <span>
 
+#include "model/analysis/state_reader.h"
 #include "model/analysis/strain.h"
 #include "model/base/parallel.h"
+#include "model/contract/law_energies.h"
 
 namespace cuboct {
 namespace {
@@ -48,29 +50,8 @@ void for_each_pair(const FixedRule& rule, const Lattice& lattice, const State& s
 
 constexpr size_t kCellsWorthAThread = 1000;
 
-// The sum of part(i, j, x_j) over unordered pairs in reach; by blocks of cells, so that its rounding does not
-// depend on the number of threads.
-template <typename T, typename Part>
-T sum_over_pairs(const FixedRule& rule, const Lattice& lattice, const State& state, const T& zero,
-                 int threads, Part part) {
-  constexpr uint32_t kBlock = 4096;
-  const ByCell by_cell(lattice, state);
-  std::vector<T> sums((lattice.size() + kBlock - 1) / kBlock, zero);
-  for_each_range(
-      sums.size(), 1,
-      [&](size_t first, size_t last) {
-        for (size_t block = first; block < last; ++block) {
-          const auto begin = static_cast<uint32_t>(block) * kBlock;
-          for_each_pair(rule, lattice, state, by_cell, begin, std::min(begin + kBlock, lattice.size()),
-                        [&](uint32_t i, uint32_t j, const Int3& x_j) {
-                          if (i < j) sums[block] += part(i, j, x_j);
-                        });
-        }
-      },
-      threads);
-  T sum = zero;
-  for (const T& one : sums) sum += one;
-  return sum;
+Vec3 as_real(const Int3& whole) {
+  return {static_cast<double>(whole[0]), static_cast<double>(whole[1]), static_cast<double>(whole[2])};
 }
 
 // What x_j, P+G fractional bits, does to i.
@@ -78,21 +59,53 @@ PairResult kick_on(const FixedRule& rule, const Particle& i, const Int3& x_j, co
   return pair_kick(rule, visible(rule, i.x), i.v, i.type, visible(rule, x_j), j.v, j.type);
 }
 
-// x_j - x_i, P+G fractional bits.
-Vec3 between(const Particle& i, const Int3& x_j) {
-  return {static_cast<double>(x_j[0] - i.x[0]), static_cast<double>(x_j[1] - i.x[1]),
-          static_cast<double>(x_j[2] - i.x[2])};
+// What the blocks' pairs give, block by block. part(block, sum)
+template <typename T, typename Part>
+std::vector<T> by_block(const NearPairs& near, const T& zero, int threads, const Part& part) {
+  std::vector<T> sums(near.blocks(), zero);
+  for_each_range(
+      sums.size(), 1,
+      [&](size_t begin, size_t end) {
+        for (size_t block = begin; block < end; ++block) part(block, sums[block]);
+      },
+      threads);
+  return sums;
+}
+
+// A block's pairs, and what they need of the law: in arrays, so that one call serves all.
+struct BlockPairs {
+  std::vector<uint32_t> i, j;
+  std::vector<double> r, energy;  // m, J
+};
+
+// Whether all pairs have the force of one law, as it is.
+bool one_law(const Rule& rule) {
+  const auto ones = [](const std::vector<double>& row) {
+    return std::ranges::all_of(row, [](double strength) { return strength == 1; });
+  };
+  return rule.law_index.empty() && rule.contact.empty() && std::ranges::all_of(rule.strength, ones);
 }
 
 struct PairEnergy {
   double energy = 0;  // J
   ClosestPair closest;
-  PairEnergy& operator+=(const PairEnergy& other) {
-    energy += other.energy;
-    if (other.closest.r < closest.r) closest = other.closest;
-    return *this;
-  }
 };
+
+// By the pair law in doubles.
+void add_energies(const Rule& rule, const std::vector<Particle>& particles, BlockPairs& pairs,
+                  PairEnergy& sum) {
+  pairs.energy.resize(pairs.r.size());
+  if (one_law(rule))
+    energies_of(*rule.law, pairs.r, pairs.energy);
+  else
+    for (size_t k = 0; k < pairs.r.size(); ++k)
+      pairs.energy[k] = rule.pair_energy(particles[pairs.i[k]].type, particles[pairs.j[k]].type, pairs.r[k]);
+  for (size_t k = 0; k < pairs.r.size(); ++k) {
+    sum.energy += pairs.energy[k];
+    if (pairs.r[k] < sum.closest.r)
+      sum.closest = {particles[pairs.i[k]].id, particles[pairs.j[k]].id, pairs.r[k]};
+  }
+}
 
 }  // namespace
 
@@ -117,14 +130,13 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
 
 double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * rule.mass / rule.dt; }
 
-Vec3 force_of(const FixedRule& rule, const Int3& kick) {
-  return newtons_per_kick(rule) *
-         Vec3(static_cast<double>(kick[0]), static_cast<double>(kick[1]), static_cast<double>(kick[2]));
-}
+Vec3 force_of(const FixedRule& rule, const Int3& kick) { return newtons_per_kick(rule) * as_real(kick); }
 
-Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick) {
+namespace {
+
+// `unit`: velocity_unit of the rule.
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, double unit) {
   const FixedType& type = rule.types[particle.type];
-  const double unit = velocity_unit(rule);
   Vec3 v;
   for (int axis = 0; axis < 3; ++axis) {
     // What the step adds to v, of any size: finish() wraps what its widths do not hold.
@@ -139,37 +151,68 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
   return v;
 }
 
+}  // namespace
+
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick) {
+  return velocity_of(rule, particle, kick, velocity_unit(rule));
+}
+
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
-                  const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
-  Energies sum;
+                  const State& state, const std::vector<Int3>& kicks, const NearPairs& near, int threads,
+                  ClosestPair* closest) {
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac());
-  for (size_t i = 0; i < state.particles.size(); ++i) {
+  const double speed = velocity_unit(fixed);
+  std::vector<double> masses;  // by type
+  for (size_t type = 0; type < rule.types.size(); ++type)
+    masses.push_back(mass_of(fixed, static_cast<int>(type)));
+  const auto add = [&](size_t i, Energies& sum) {
     const Particle& particle = state.particles[i];
-    const Vec3& gravity = rule.types[particle.type].gravity;
-    const double mass = mass_of(fixed, particle.type), relative = mass / fixed.mass;
+    const ParticleType& type = rule.types[particle.type];
+    const double mass = masses[particle.type], relative = mass / fixed.mass;
     const Cell& cell = lattice.cell(particle.cell);
-    const Vec3 velocity = velocity_of(fixed, particle, kicks[i]);
+    const Vec3 velocity = velocity_of(fixed, particle, kicks[i], speed);
     for (int axis = 0; axis < 3; ++axis) {
       const double x =
           origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
       const double v = velocity[axis], kinetic = 0.5 * mass * v * v;
       sum.kinetic += kinetic;
-      if (is_free(rule.types[particle.type], axis))
-        sum.free.kinetic += kinetic, sum.free.velocities[axis] += relative * v;
-      sum.gravity -= mass * gravity[axis] * x;
+      if (is_free(type, axis)) sum.free.kinetic += kinetic, sum.free.velocities[axis] += relative * v;
+      sum.gravity -= mass * type.gravity[axis] * x;
     }
+  };
+  Energies sum;
+  for (const Energies& part : by_block(near, Energies{}, threads, [&](size_t block, Energies&part) {
+         for (size_t i = near.first_of(block); i < near.first_of(block + 1); ++i) add(i, part);
+       })) {
+    sum.kinetic += part.kinetic, sum.gravity += part.gravity;
+    sum.free.kinetic += part.free.kinetic, sum.free.velocities += part.free.velocities;
   }
   const double cutoff = rule.cutoff();
-  const PairEnergy pairs = sum_over_pairs(fixed, lattice, state, PairEnergy{}, threads,
-                                          [&](uint32_t i, uint32_t j, const Int3& x_j) -> PairEnergy {
-                                            const Particle &a = state.particles[i], &b = state.particles[j];
-                                            const double r = between(a, x_j).norm() * length;
-                                            if (r >= cutoff) return {};
-                                            return {rule.pair_energy(a.type, b.type, r), {a.id, b.id, r}};
-                                          });
+  const std::vector<PairEnergy> parts =
+      by_block(near, PairEnergy{}, threads, [&](size_t block, PairEnergy& part) {
+        thread_local BlockPairs pairs;
+        pairs.i.clear(), pairs.j.clear(), pairs.r.clear();
+        near.for_each(block, [&](uint32_t i, uint32_t j, const Int3& d) {
+          const double r = as_real(d).norm() * length;
+          if (r < cutoff) pairs.i.push_back(i), pairs.j.push_back(j), pairs.r.push_back(r);
+        });
+        add_energies(rule, state.particles, pairs, part);
+      });
+  PairEnergy pairs;
+  for (const PairEnergy& part : parts) {
+    pairs.energy += part.energy;
+    if (part.closest.r < pairs.closest.r) pairs.closest = part.closest;
+  }
   sum.potential = pairs.energy;
   if (closest) *closest = pairs.closest;
   return sum;
+}
+
+Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                  const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
+  NearPairs near(fixed, lattice, threads);
+  near.take(state);
+  return energies(rule, fixed, lattice, origin, state, kicks, near, threads, closest);
 }
 
 Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& force) {
@@ -183,17 +226,28 @@ Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& forc
   return a;
 }
 
-Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+Mat3 virial_stress(const FixedRule& rule, const State& state, double volume, const NearPairs& near,
                    int threads) {
   const double length = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
-  const Mat3 sum = sum_over_pairs(rule, lattice, state, Mat3(Mat3::Zero()), threads,
-                                  [&](uint32_t i, uint32_t j, const Int3& x_j) -> Mat3 {
-                                    const Particle &a = state.particles[i], &b = state.particles[j];
-                                    const PairResult pair = kick_on(rule, a, x_j, b);
-                                    if (!pair.inside) return Mat3::Zero();
-                                    return force_of(rule, pair.kick) * between(a, x_j).transpose();
-                                  });
+  const double newtons = newtons_per_kick(rule);
+  const std::vector<Mat3> parts = by_block(near, Mat3(Mat3::Zero()), threads, [&](size_t block, Mat3& part) {
+    near.for_each(block, [&](uint32_t i, uint32_t j, const Int3& d) {
+      const Particle& a = state.particles[i];
+      const PairResult pair =
+          kick_on(rule, a, {a.x[0] + d[0], a.x[1] + d[1], a.x[2] + d[2]}, state.particles[j]);
+      if (pair.inside) part += newtons * as_real(pair.kick) * as_real(d).transpose();
+    });
+  });
+  Mat3 sum = Mat3::Zero();
+  for (const Mat3& part : parts) sum += part;
   return sum * (length / volume);
+}
+
+Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+                   int threads) {
+  NearPairs near(rule, lattice, threads);
+  near.take(state);
+  return virial_stress(rule, state, volume, near, threads);
 }
 
 double pressure(const Energies& energies, const Mat3& virial_stress, double volume) {

@@ -4,27 +4,13 @@
 #include <numeric>
 
 #include "model/analysis/body_reading.h"
+#include "model/analysis/state_reader.h"
 
 namespace cuboct {
 
 Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                    const State& state, const Asked& asked, int threads) {
-  Reading reading;
-  reading.step = state.step;
-  std::vector<Int3> kicks;
-  if (asked.forces || asked.velocities || asked.energies)
-    kicks = summed_kicks(fixed, lattice, state, threads);
-  for (const uint32_t id : asked.ids) {
-    reading.x.push_back(position_of(fixed, lattice, origin, state.particles[id]));
-    reading.force.push_back(force_of(fixed, kicks.empty() ? Int3{} : kicks[id]));
-    if (asked.velocities) reading.v.push_back(velocity_of(fixed, state.particles[id], kicks[id]));
-  }
-  if (!asked.energies) return reading;
-  ClosestPair closest;
-  reading.energies = energies(rule, fixed, lattice, origin, state, kicks, threads, &closest);
-  if (asked.watch) asked.watch->see(fixed, lattice, origin, state, kicks, reading.energies, closest);
-  if (asked.volume > 0) reading.stress = virial_stress(fixed, lattice, state, asked.volume, threads);
-  return reading;
+  return StateReader(rule, fixed, lattice, origin, threads).read(state, asked);
 }
 
 Reading read_reference(const Rule& rule, const Reference& reference, double late, const Asked& asked) {

@@ -21,6 +21,8 @@ namespace {
 // what the body could ever transmit in tension.
 constexpr int kBonds = 12;
 
+constexpr size_t kWorthAThread = 4096;  // particles
+
 constexpr double kCreep = 1e-3;  // of the pitch: where a law's stiffness begins to change
 
 // Where a bond is at rest, m; of a law that only pushes the core, where it is stiffest.
@@ -406,11 +408,17 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
   Moment moment;
   moment.step = state.step;
   moment.x = [&](uint32_t id) { return position_of(rule, lattice, origin, state.particles[id]); };
-  moment.v = [&](uint32_t id) { return real(state.particles[id].v); };
-  moment.v_next = [&](uint32_t id) {
-    const Particle& p = state.particles[id];
-    return real(finish(rule, kicks[id], p.x, p.v, p.u, p.type).v);
+  std::vector<Vec3> v(state.particles.size()), next(v.size());
+  const auto move = [&](size_t begin, size_t end) {
+    for (size_t id = begin; id < end; ++id) {
+      const Particle& p = state.particles[id];
+      v[id] = real(p.v);
+      next[id] = real(finish(rule, kicks[id], p.x, p.v, p.u, p.type).v);
+    }
   };
+  for_each_range(v.size(), kWorthAThread, move, threads_);
+  moment.v = [&](uint32_t id) { return v[id]; };
+  moment.v_next = [&](uint32_t id) { return next[id]; };
   moment.force = [&](uint32_t id) { return force_of(rule, kicks[id]); };
   moment.u = [&](uint32_t id) -> Vec3 { return rule.dt * real(state.particles[id].u); };
   moment.fixed = &rule;

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "model/base/error.h"
+#include "model/contract/law_energies.h"
 
 namespace cuboct {
 namespace {
@@ -343,6 +344,21 @@ std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch,
   }
   throw InputError(fmt::format("unknown preset law '{}'", name),
                    "the presets are elastic, brittle, ductile and viscous");
+}
+
+// The classes are final: calls of their members are inlined.
+void energies_of(const PairLaw& law, std::span<const double> r, std::span<double> energy) {
+  const auto each = [&](const auto& of) {
+    for (size_t k = 0; k < r.size(); ++k) energy[k] = of.energy(r[k]);
+  };
+  if (const auto* cubic = dynamic_cast<const HermiteLaw*>(&law))
+    each(*cubic);
+  else if (const auto* lj = dynamic_cast<const LennardJones*>(&law))
+    each(*lj);
+  else if (const auto* arcs = dynamic_cast<const BSplineLaw*>(&law))
+    each(*arcs);
+  else
+    each(law);
 }
 
 namespace {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <tuple>
 
@@ -25,6 +26,21 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+// Adds the time of a scope to each of them.
+class Timed {
+ public:
+  explicit Timed(std::initializer_list<double*> sums) : sums_(sums) {}
+  ~Timed() {
+    for (double* sum : sums_) *sum += since(begin_);
+  }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  Clock::time_point begin_ = Clock::now();
+  std::vector<double*> sums_;
+};
 
 bool among(const std::vector<uint64_t>& ascending, uint64_t step) {
   return std::binary_search(ascending.begin(), ascending.end(), step);
@@ -83,8 +99,9 @@ class Loop {
   uint64_t piece_;  // steps between two looks at the clock, of an engine that works in batches
   std::optional<uint64_t> looked_;
   Momentum before_;
-  bool over_ = false;  // as the scene's `until` has it
-  bool lost_ = false;  // the engine's state went with the step that failed
+  double besides_ = 0;  // s, of `trace_.seconds`: what is read and kept of the steps
+  bool over_ = false;   // as the scene's `until` has it
+  bool lost_ = false;   // the engine's state went with the step that failed
   Recorded result_;
   Trace& trace_;
 };
@@ -191,6 +208,7 @@ void Loop::resume_trace(const CheckpointHead& head) {
 
 // A state is made only where a frame or a sample asks for one.
 void Loop::record() {
+  const Timed timed({&trace_.seconds, &besides_});
   const uint64_t step = engine_->step_count();
   trace_.steps_done = step;
   // Of batches, the hash after each step has come with them.
@@ -377,11 +395,14 @@ void Loop::finish() {
   const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
   const bool bonds = request_.last && !request_.frames.empty() && has_reference_bonds(scene_.rule);
   if (lost_ && (sample || look || hash || frame || bonds || request_.totals)) go_back_to(last);
-  if (hash) trace_.state_hash.push_back(engine_->hash());
-  if (sample || look) measure(look || sample, sample);
-  if (frame) {
-    RunState last_frame = engine_->frame(request_.forces);
-    if (leads()) give(request_, std::move(last_frame), trace_);
+  {
+    const Timed timed({&trace_.seconds, &besides_});
+    if (hash) trace_.state_hash.push_back(engine_->hash());
+    if (sample || look) measure(look || sample, sample);
+    if (frame) {
+      RunState last_frame = engine_->frame(request_.forces);
+      if (leads()) give(request_, std::move(last_frame), trace_);
+    }
   }
   if (bonds) trace_.bonds = engine_->saved_body()->bonds->kept;
   if (leads()) log_.end(last, sample || among(request_.probes, last), [this] { return meter_.latest(); });
@@ -394,7 +415,7 @@ void Loop::finish() {
     trace_.watched = watch->last_step();
   }
   if (request_.totals) total();
-  if (const auto seconds = engine_->seconds()) trace_.seconds = *seconds;
+  if (const auto seconds = engine_->seconds()) trace_.seconds = *seconds + besides_;
   trace_.notes = engine_->notes();
 }
 

@@ -28,9 +28,9 @@ RunState StateEngine::frame(bool) {
 
 Reading StateEngine::read(const Asked& asked) {
   const State& state = here();
-  if (!leads()) return {};
-  return read_state(setting_.rule, setting_.fixed, setting_.lattice, setting_.origin, state, asked,
-                    setting_.threads);
+  std::vector<Int3> kicks;
+  if (takes_kicks(asked)) kicks = make_kicks();
+  return leads() ? reader_.read(state, asked, std::move(kicks)) : Reading{};
 }
 
 }  // namespace cuboct

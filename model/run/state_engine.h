@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "model/analysis/state_reader.h"
 #include "model/run/engine.h"
 
 namespace cuboct {
@@ -19,7 +20,9 @@ struct FixedSetting {
 
 class StateEngine : public Engine {
  public:
-  explicit StateEngine(const FixedSetting& setting) : setting_(setting) {}
+  explicit StateEngine(const FixedSetting& setting)
+      : setting_(setting),
+        reader_(setting.rule, setting.fixed, setting.lattice, setting.origin, setting.threads) {}
 
   uint64_t hash() override { return hash_of(setting_.lattice, here()); }
   RunState frame(bool) override;
@@ -30,11 +33,15 @@ class StateEngine : public Engine {
  protected:
   virtual State
   make_state() = 0;  // sorted by id; of processes that share a scene whole on the one that leads
+  // summed_kicks of the state, of an engine that sums them faster than it; else empty. Whole where the state
+  // is.
+  virtual std::vector<Int3> make_kicks() { return {}; }
 
  private:
   const State& here();
 
   FixedSetting setting_;
+  StateReader reader_;
   std::optional<State> state_;  // of the step at which it was asked for
   // Of the last state that was made, which frame() may have given away.
   std::optional<uint64_t> made_;

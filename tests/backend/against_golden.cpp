@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "model/analysis/measure.h"
 #include "model/contract/golden.h"
 #include "model/trace/compare.h"
 #include "tests/support/block.h"
@@ -65,6 +66,13 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
   bool was_at_rest = true;
   for (uint64_t s = 0; s < c.steps; ++s) {
     std::string expected, found;
+    if (s % 4 == 0) {
+      const std::vector<Int3> kicks = engine.kicks();
+      if (first && !kicks.empty()) {
+        ASSERT_EQ(kicks, summed_kicks(plan.rule, plan.lattice, before, 1)) << "step " << s;
+      }
+      count.kicks += kicks.size();
+    }
     try {
       golden.step();
     } catch (const RunError& e) {

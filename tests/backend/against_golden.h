@@ -17,11 +17,13 @@ std::vector<emu::LatticeOptions> variants(const Plan& plan);
 struct Count {
   uint64_t updates = 0, moves = 0, faults = 0, vectors = 0;
   uint64_t resumed = 0;  // steps with cells at rest after one without
+  uint64_t kicks = 0;    // sums that the engine gave before a step
   emu::LatticeCounters lists;
 };
 
 // Runs both up to the case's steps or the fault that golden meets: state, hash, momentum, order of slots,
-// number of crossings and faults at each step. With ranks each runs golden, and the first has all particles.
+// number of crossings and faults at each step, and at some the kicks. With ranks each runs golden, and the
+// first has all particles.
 void compare(const Case& c, const emu::LatticeOptions& options, Count& count);
 
 // A gas, damped, that at last collides faster than its relative velocities are wide.

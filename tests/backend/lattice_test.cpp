@@ -33,6 +33,7 @@ TEST(LatticeRandom, EqualsGolden) {
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(count.updates, 100000u);
+  EXPECT_GT(count.kicks, 20000u);
   EXPECT_GT(count.moves, 500u);
   EXPECT_GT(count.faults, 0u);
   EXPECT_GT(weighted, 20);

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "model/analysis/near_pairs.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "model/base/parallel.h"
+#include "model/contract/neighbours.h"
+#include "model/real/pair_kernel.h"
+
+namespace cuboct {
+namespace {
+
+// A list costs as much as some kListing states with it, and its pairs grow as its volume. With u cutoffs of
+// motion between two states a skin of s cutoffs serves s/(2 u) of them: (1 + s)^3 + kListing 2 u/s is least
+// near s = sqrt(2 kListing u/3).
+constexpr double kListing = 20, kLeastSkin = 0.02, kMostSkin = 0.3;
+constexpr double kFirstSkin = 0.1;  // of a run of which nothing is known
+
+constexpr size_t kWorthAThread = 2000;  // particles
+
+}  // namespace
+
+NearPairs::NearPairs(const FixedRule& rule, const Lattice& lattice, int threads)
+    : lattice_(lattice), frac_(rule.widths.velocity_frac()), threads_(threads) {
+  // Forces see rounded differences.
+  const int D = rule.widths.difference_frac;
+  cutoff_ = std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)) + 2, -D);
+  for (size_t a = 0; a < 3; ++a) period_[a] = int64_t{lattice.period()[a]} << frac_;
+}
+
+// The farthest that a particle is from where the list found it, in cells.
+double NearPairs::moved() const {
+  double most = 0;
+  for (size_t i = 0; i < x_.size(); ++i) {
+    const Int3 d = between(at_[i], x_[i]);
+    double r2 = 0;
+    for (const int64_t along : d) r2 += static_cast<double>(along) * static_cast<double>(along);
+    most = std::max(most, r2);
+  }
+  return std::ldexp(std::sqrt(most), -frac_) * (1 + 1e-9);
+}
+
+void NearPairs::take(const State& state) {
+  x_.resize(state.particles.size());
+  for (size_t i = 0; i < x_.size(); ++i) {
+    const Particle& p = state.particles[i];
+    const Cell& cell = lattice_.cell(p.cell);
+    for (size_t a = 0; a < 3; ++a)
+      x_[i][a] = static_cast<int64_t>((static_cast<uint64_t>(int64_t{cell[a]}) << frac_) +
+                                      static_cast<uint64_t>(p.x[a]));
+  }
+  ++states_;
+  double each = -1;  // cutoffs between two states
+  if (at_.size() == x_.size()) {
+    const double far = moved();
+    if (2 * far <= skin_) return;
+    each = far / static_cast<double>(states_) / cutoff_;
+  }
+  skin_ = cutoff_ *
+          (each < 0 ? kFirstSkin : std::clamp(std::sqrt(2 * kListing * each / 3), kLeastSkin, kMostSkin));
+  list();
+}
+
+void NearPairs::list() {
+  at_ = x_;
+  states_ = 0;
+  Periodic periodic;
+  std::array<double, 3> box{};
+  for (size_t a = 0; a < 3; ++a) box[a] = periodic.extent[a] = lattice_.period()[a];
+  std::vector<Vec3> place(x_.size());  // cells
+  for (size_t i = 0; i < x_.size(); ++i)
+    for (size_t a = 0; a < 3; ++a) place[i][a] = std::ldexp(static_cast<double>(x_[i][a]), -frac_);
+  CellList cells(cutoff_, periodic, skin_);
+  cells.build(place);
+  const std::span<const uint32_t> order = cells.order();
+  const double range2 = std::pow((cutoff_ + skin_) * (1 + 1e-9), 2);
+  // Stretches of particles in the order of cells, each with the particles near it that have a larger id.
+  const int threads = threads_ > 0 ? threads_ : usable_cores();
+  const size_t parts = std::clamp<size_t>(x_.size() / kWorthAThread, 1, static_cast<size_t>(threads));
+  std::vector<std::vector<uint32_t>> found(parts);
+  std::vector<uint32_t> count(x_.size());
+  const auto begin_of = [&](size_t part) { return order.size() * part / parts; };
+  for_each_part(parts, threads, [&](size_t p, int) {
+    std::vector<uint64_t> candidates, near;
+    std::vector<double> at[3];
+    int64_t home = -1;
+    for (size_t slot = begin_of(p); slot < begin_of(p + 1); ++slot) {
+      const uint32_t i = order[slot];
+      if (const int64_t cell = cells.cell_at(place[i]); cell != home) {
+        home = cell;
+        candidates.clear();
+        for (auto& axis : at) axis.clear();
+        cells.for_each_near(cell, [&](int64_t other) {
+          for (uint32_t b = cells.begin_of(other); b < cells.end_of(other); ++b) {
+            candidates.push_back(order[b]);
+            for (size_t a = 0; a < 3; ++a) at[a].push_back(place[order[b]][static_cast<Eigen::Index>(a)]);
+          }
+        });
+        near.resize(candidates.size() + kNearerSpill);
+      }
+      const size_t n = nearer(at, candidates, place[i], box, range2, near);
+      for (size_t k = 0; k < n; ++k)
+        if (near[k] > i) found[p].push_back(static_cast<uint32_t>(near[k])), ++count[i];
+    }
+  });
+  first_.assign(x_.size() + 1, 0);
+  for (size_t i = 0; i < x_.size(); ++i) first_[i + 1] = first_[i] + count[i];
+  other_.resize(first_.back());
+  for_each_part(parts, threads, [&](size_t p, int) {
+    auto from = found[p].begin();
+    for (size_t slot = begin_of(p); slot < begin_of(p + 1); ++slot) {
+      const uint32_t i = order[slot];
+      std::copy_n(from, count[i], other_.begin() + static_cast<ptrdiff_t>(first_[i]));
+      from += count[i];
+    }
+  });
+}
+
+}  // namespace cuboct

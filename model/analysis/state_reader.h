@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Readings of one run's states, one after another: what it costs to find near pairs is shared between them.
+#pragma once
+
+#include <vector>
+
+#include "model/analysis/near_pairs.h"
+#include "model/analysis/reading.h"
+
+namespace cuboct {
+
+// As in measure.h, of a state that `near` has taken.
+Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                  const State& state, const std::vector<Int3>& kicks, const NearPairs& near, int threads,
+                  ClosestPair* closest);
+Mat3 virial_stress(const FixedRule& rule, const State& state, double volume, const NearPairs& near,
+                   int threads);
+
+// Reads the states of one run, in the order of their steps.
+class StateReader {
+ public:
+  // References outlive it. `threads`: 0 for one per core; no bit depends on their number.
+  StateReader(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+              int threads);
+  // `kicks`: summed_kicks of the state, where the engine has them; empty: they are summed here.
+  Reading read(const State& state, const Asked& asked, std::vector<Int3> kicks = {});
+
+ private:
+  const Rule& rule_;
+  const FixedRule& fixed_;
+  const Lattice& lattice_;
+  const Vec3& origin_;
+  int threads_;
+  NearPairs near_;
+};
+
+// Whether a reading takes the sums of the pairs' kicks.
+inline bool takes_kicks(const Asked& asked) { return asked.forces || asked.velocities || asked.energies; }
+
+}  // namespace cuboct
