@@ -13,6 +13,7 @@
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
 #include "model/base/output.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
 
 namespace cuboct {
@@ -82,9 +83,10 @@ Frame FrameMaker::make(const State& state) const {
   return frame;
 }
 
-Frame FrameMaker::make(uint64_t step, std::vector<Vec3> x, std::vector<Vec3> v) const {
+Frame FrameMaker::make(const RealFrame& real) const {
   const Scene& scene = loaded_.scene;
-  Frame frame{step, static_cast<double>(step) * scene.rule.dt, std::move(x), std::move(v), scene.body.type};
+  Frame frame{real.step, static_cast<double>(real.step) * scene.rule.dt, real.x, real.v, scene.body.type};
+  frame.own = real.shown;
   measure(frame, false);
   return frame;
 }
@@ -94,8 +96,17 @@ FrameStyle frame_style(const Scene& scene) {
   style.periodic = scene.periodic;
   style.radius = (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff()) / 2;
   style.reduced = scene.boltzmann == 1;
+  const RoundsRule* rounds = rounds_of(scene.rule);
   for (size_t k = 0; k < scene.rule.types.size(); ++k)
-    style.types.push_back(frame_type(scene.rule.types[k].name, scene.rule.mass_of(static_cast<int>(k))));
+    style.types.push_back(frame_type(scene.rule.types[k].name, scene.rule.mass_of(static_cast<int>(k)),
+                                     rounds ? rounds->element() : ""));
+  if (rounds)
+    for (const RuleField& field : rounds->declaration().shown) {
+      FrameField own{field.name, field.unit};
+      if (field.numbers == 3) own.components = kVectorNames;
+      if (field.numbers == 6) own.components = kTensorNames;
+      style.own.push_back(std::move(own));
+    }
   return style;
 }
 

@@ -32,8 +32,7 @@ class FrameMaker {
   // `whole`: with strain tensors and broken bonds, which pictures do without.
   FrameMaker(const Loaded& loaded, bool whole);
   Frame make(const State& state) const;
-  Frame make(uint64_t step, std::vector<Vec3> x,
-             std::vector<Vec3> v) const;  // in real numbers, types the scene's
+  Frame make(const RealFrame& frame) const;  // types the scene's
 
  private:
   void measure(Frame& frame, bool fixed) const;

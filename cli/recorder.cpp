@@ -195,7 +195,7 @@ void Recorder::keep(const RealFrame& frame) {
   Impl& to = *impl_;
   to.begin();
   if (!to.options.no_states) to.states = true, to.add(to.trace, frame);
-  to.draw(to.maker.make(frame.step, frame.x, frame.v));
+  to.draw(to.maker.make(frame));
 }
 
 void Recorder::finish(const Trace& trace, const Items& summary, const std::string& state) {

@@ -24,8 +24,7 @@ Shots::Shots(const Loaded& loaded, const Trace& trace, const std::string& path)
 
 Frame Shots::made(size_t k, const FrameMaker& maker) const {
   if (!real_) return maker.make(trace_.frames[k]);
-  const RealFrame& body = trace_.bodies[k];
-  return maker.make(body.step, body.x, body.v);
+  return maker.make(trace_.bodies[k]);
 }
 
 std::optional<size_t> Shots::crack_onset() const {

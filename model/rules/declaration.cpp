@@ -59,6 +59,8 @@ void check(const RuleDeclaration& rule) {
   check_fields(rule, rule.particle, names);
   check_fields(rule, rule.bond, names);
   check_fields(rule, rule.constants, names);
+  std::set<std::string> shown;
+  check_fields(rule, rule.shown, shown);
   if (rule.rounds.empty()) refuse(rule, "it has no round");
   if (rule.bonds == BondRange::current && !(rule.bond.empty() && rule.constants.empty()))
     refuse(rule, "its bonds are those of the moment, and hold nothing");
@@ -105,6 +107,7 @@ std::vector<DeclarationLine> lines_of(const RuleDeclaration& rule) {
   fields("particle fields", rule.particle);
   fields("bond constants", rule.constants);
   fields("bond fields", rule.bond);
+  fields("in frames", rule.shown);
   for (size_t k = 0; k < rule.rounds.size(); ++k) {
     const RuleRound& round = rule.rounds[k];
     std::string note = fmt::format("exchanges {}", list(round.exchanged));

@@ -41,11 +41,12 @@ enum class BondRange : unsigned char {
 struct RuleDeclaration {
   std::string name;
   BondRange bonds = BondRange::reference;
-  std::vector<RuleField> constants;  // of a bond, never changed: what the reference body says of it
-  std::vector<RuleField> bond;       // of a bond, kept from step to step
-  std::vector<RuleField> particle;   // of a particle, besides its state
-  std::vector<std::string> ready;    // of those, what is made of the state before the first round
-  std::vector<RuleRound> rounds;     // in order
+  std::vector<RuleField> constants;   // of a bond, never changed: what the reference body says of it
+  std::vector<RuleField> bond;        // of a bond, kept from step to step
+  std::vector<RuleField> particle;    // of a particle, besides its state
+  std::vector<std::string> ready;     // of those, what is made of the state before the first round
+  std::vector<RuleRound> rounds;      // in order
+  std::vector<RuleField> shown = {};  // of a particle, for those who look at it: RoundsTerms::shown()
 };
 
 // The field that the last round makes and the step adds to the momentum, N.

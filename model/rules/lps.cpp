@@ -71,6 +71,8 @@ RuleDeclaration declaration_of(const LpsMaterial& m) {
     rule.ready.insert(rule.ready.end(), {"shape", "missing"});
   }
   rule.rounds = {std::move(dilatation), std::move(force)};
+  rule.shown = {{"dilatation", 1, "1", "growth of the volume about the particle"}};
+  if (m.breaks()) rule.shown.push_back({"damage", 1, "1", "of its bonds' volume the share that is gone"});
   return rule;
 }
 

@@ -118,6 +118,13 @@ class TermsOfBody final : public LpsTerms {
     return 1 - here / whole;
   }
   uint64_t bonds() const override { return bonds_.other.size() / 2; }
+  std::vector<std::vector<double>> shown() const override {
+    std::vector<std::vector<double>> fields{dilatation_};
+    if (!m_.breaks()) return fields;
+    std::vector<double>& damaged = fields.emplace_back(u_.size());
+    for (size_t i = 0; i < damaged.size(); ++i) damaged[i] = damage(i);
+    return fields;
+  }
 
   std::vector<uint64_t> memory() const override {
     std::vector<uint64_t> words;

@@ -35,6 +35,8 @@ class RoundsTerms {
   // Of a particle's bonds the share that is broken, 0 to 1, and how many bonds there are (each once).
   virtual double damage(size_t) const { return 0; }
   virtual uint64_t bonds() const = 0;
+  // What the declaration's `shown` names, in its order: [field][particle x its numbers].
+  virtual std::vector<std::vector<double>> shown() const { return {}; }
 
   // The bonds' own fields, as a checkpoint keeps them. recall(): InputError where they are another body's.
   virtual std::vector<uint64_t> memory() const { return {}; }
@@ -48,6 +50,8 @@ class RoundsRule {
   virtual ~RoundsRule() = default;
 
   virtual const RuleDeclaration& declaration() const = 0;
+  // The chemical element whose atoms the particles are; empty: none.
+  virtual std::string element() const { return {}; }
   // m, beyond which no particle has a bond to another.
   virtual double reach() const = 0;
   // m, beyond which the bond of two nearest neighbours is broken; infinite where none breaks.

@@ -99,6 +99,7 @@ class TersoffRule final : public RoundsRule {
     static const RuleDeclaration rule = declared();
     return rule;
   }
+  std::string element() const override { return tersoff_.elements.front(); }
   double reach() const override { return tersoff_.cutoff(); }
   double bond_reach() const override { return tersoff_.cutoff(); }
   double stable_time_step(double mass, double) const override {

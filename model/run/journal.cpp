@@ -9,7 +9,7 @@ namespace cuboct {
 namespace {
 
 constexpr uint64_t kMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
-constexpr uint64_t kVersion = 2;
+constexpr uint64_t kVersion = 3;
 enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame, kRealFrame };
 
 }  // namespace
@@ -140,8 +140,15 @@ void Journal::frame(const RunState& state) {
     return;
   }
   const RealFrame& real = std::get<RealFrame>(state);
-  begin(kRealFrame, real.step, real.x.size() * (displaced_ ? 9 : 6));
+  size_t words = 1 + real.x.size() * (displaced_ ? 9 : 6);
+  for (const std::vector<double>& field : real.shown) words += 1 + field.size();
+  begin(kRealFrame, real.step, words);
+  out_->word(real.x.size());
   put(*out_, real.x, real.v, real.u);
+  for (const std::vector<double>& field : real.shown) {
+    out_->word(field.size());
+    for (const double number : field) out_->number(number);
+  }
 }
 
 WordMark Journal::sync() {
@@ -158,9 +165,13 @@ void Journal::for_each_frame(const std::function<void(RunState)>& see) {
     in.seek(frame_places_[k] + 2);
     const uint64_t words = in.count(1);
     if (real) {
+      const uint64_t end = in.mark().words + words;
       Body body;
-      take_body(in, words / (displaced_ ? 9 : 6), displaced_, body);
-      see(RealFrame{frame_steps_[k], std::move(body.x), std::move(body.v), {}, std::move(body.u)});
+      take_body(in, in.count(displaced_ ? 9 : 6), displaced_, body);
+      RealFrame frame{frame_steps_[k], std::move(body.x), std::move(body.v), {}, std::move(body.u)};
+      while (in.mark().words < end)
+        for (double& number : frame.shown.emplace_back(in.count(1))) number = in.number();
+      see(std::move(frame));
       continue;
     }
     State frame;

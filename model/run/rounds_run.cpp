@@ -57,7 +57,13 @@ uint64_t RoundsRun::hash() { throw std::logic_error("states in real numbers have
 
 RunState RoundsRun::frame(bool forces) {
   const Body& now = body();
-  return RealFrame{step_, now.x, now.v, forces ? engine_->forces() : std::vector<Vec3>(), now.u};
+  return RealFrame{step_,
+                   now.x,
+                   now.v,
+                   forces ? engine_->forces() : std::vector<Vec3>(),
+                   now.u,
+                   rounds_of(scene_.rule)->declaration().shown.empty() ? std::vector<std::vector<double>>()
+                                                                       : engine_->terms()->shown()};
 }
 
 Reading RoundsRun::read(const Asked& asked) {

@@ -9,6 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/bond_counters.h"
 #include "model/run/reference_engine.h"
 
@@ -129,8 +130,10 @@ uint64_t StaticEngine::hash() { throw std::logic_error("states in real numbers h
 
 RunState StaticEngine::frame(bool forces) {
   const Body& body = balance_.body();
-  return RealFrame{step_, body.x, body.v, forces ? balance_.reference().forces() : std::vector<Vec3>(),
-                   body.u};
+  const RoundsTerms* terms = balance_.reference().terms();
+  return RealFrame{step_,  body.x,
+                   body.v, forces ? balance_.reference().forces() : std::vector<Vec3>(),
+                   body.u, terms ? terms->shown() : std::vector<std::vector<double>>()};
 }
 
 Reading StaticEngine::read(const Asked& asked) {

@@ -2,6 +2,7 @@
 #include "model/trace/frame.h"
 
 #include <algorithm>
+#include <limits>
 #include <string_view>
 
 namespace cuboct {
@@ -27,16 +28,17 @@ bool is_symbol(const std::string& name) {
 const std::vector<std::string> kVectorNames{"x", "y", "z"};
 const std::vector<std::string> kTensorNames{"xx", "yy", "zz", "xy", "xz", "yz"};
 
-FrameType frame_type(const std::string& name, double mass) {
+FrameType frame_type(const std::string& name, double mass, const std::string& element) {
   const size_t end = std::min(name.find('/'), name.size());
   FrameType type{name.substr(0, end), end < name.size() ? name.substr(end + 1) : std::string()};
   type.mass = mass;
-  if (is_symbol(type.material)) type.species = type.material;
+  for (const std::string& symbol : {type.material, element})
+    if (is_symbol(symbol)) type.species = symbol;
   return type;
 }
 
 std::vector<FrameField> frame_fields(const FrameStyle& style) {
-  return {
+  std::vector<FrameField> fields{
       {"velocity", "m/s", kVectorNames, false,
        [](const Frame& f, size_t i, size_t a) { return f.v[i][static_cast<int>(a)]; }},
       {"radius", "m", {}, false, [radius = style.radius](const Frame&, size_t, size_t) { return radius; }},
@@ -46,6 +48,14 @@ std::vector<FrameField> frame_fields(const FrameStyle& style) {
       {"broken_bonds", "1", {}, true, [](const Frame& f, size_t i, size_t) {
          return static_cast<double>(f.broken[i]);
        }}};
+  for (size_t k = 0; k < style.own.size(); ++k) {
+    FrameField field = style.own[k];
+    field.value = [k, numbers = field.numbers()](const Frame& f, size_t i, size_t c) {
+      return k < f.own.size() ? f.own[k][i * numbers + c] : std::numeric_limits<double>::quiet_NaN();
+    };
+    fields.push_back(std::move(field));
+  }
+  return fields;
 }
 
 std::string unit_text(const FrameStyle& style, const std::string& unit) {

@@ -22,6 +22,7 @@ struct Frame {
   std::vector<double> strain{};                // axial elongation, 1 (strain.h)
   std::vector<std::array<float, 6>> tensor{};  // Green-Lagrange strain: xx, yy, zz, xy, xz, yz
   std::vector<uint32_t> broken{};              // initial neighbours that are out of reach
+  std::vector<std::vector<double>> own{};      // [FrameStyle::own][particle x its numbers]; empty: not known
 };
 
 struct FrameType {
@@ -45,16 +46,17 @@ struct FrameField {
 
 struct FrameStyle {
   Periodic periodic;
-  double radius = 0;             // m, of a drawn particle: half the pitch
-  bool reduced = false;          // units of the scene: no metres, no seconds
-  std::vector<FrameType> types;  // by type index
+  double radius = 0;              // m, of a drawn particle: half the pitch
+  bool reduced = false;           // units of the scene: no metres, no seconds
+  std::vector<FrameType> types;   // by type index
+  std::vector<FrameField> own{};  // of the scene's rule, without values: those of Frame::own
 };
 
-// Of the name of a type, "material" or "material/constraint".
-FrameType frame_type(const std::string& name, double mass);
+// Of the name of a type, "material" or "material/constraint". `element`: of the atoms, where the rule knows.
+FrameType frame_type(const std::string& name, double mass, const std::string& element = {});
 
-// Velocity, radius, strains, broken bonds, in the order of all files. Position, id and type are each format's
-// own.
+// Velocity, radius, strains, broken bonds, and the rule's own fields, in the order of all files. Position, id
+// and type are each format's own.
 std::vector<FrameField> frame_fields(const FrameStyle& style);
 // The unit as files tell it: "reduced" for what has one in a scene of reduced units.
 std::string unit_text(const FrameStyle& style, const std::string& unit);

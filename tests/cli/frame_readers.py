@@ -5,6 +5,7 @@ with 77 where none is.
 
 usage: frame_readers.py ROOT DIRECTORY_OF_CUBOCT
 """
+import json
 import os
 import re
 import shutil
@@ -59,38 +60,66 @@ region = { shape = "half_space", point = "[2, 0, 0] nm", normal = "-x" }
 duration = "5 ps"
 frame_every = 1000
 """
+# A peridynamic block that tears.
+GLASS = """density = "2440 kg/m^3"
+packing = { pitch = "1 mm" }
+geometry = { shape = "box", min = "[0, 0, 0] mm", max = "[6, 6, 3] mm" }
+[[velocity]]
+region = { shape = "half_space", point = "[0, 3.1, 0] mm", normal = "y" }
+uniform = "[0, 40, 0] m/s"
+[rule]
+kind = "lps"
+youngs_modulus = "72 GPa"
+poissons_ratio = 0.22
+fracture_energy = "3.8 J/m^2"
+[run]
+dt = "auto"
+steps = 100
+"""
+
 
 def columns_of_page():
-    """By format a dictionary of the names of the page's table and their units."""
+    """By format a dictionary of the names of the page's table and their units; and those of peridynamics alone."""
     page = open(os.path.join(ROOT, "docs/reference/frames.md"), encoding="utf-8").read()
     rows = [[cell.strip() for cell in row.strip("|").split("|")] for row in re.findall(r"(?m)^\|.*\|$", page.split("## Fields")[1])]
     head, rows = rows[0], rows[2:]
     rows = rows[: next((k for k, row in enumerate(rows) if len(row) != len(head)), len(rows))]
-    formats = {cell.strip("`"): {} for cell in head[2:]}
+    formats, own = {cell.strip("`"): {} for cell in head[2:]}, set()
     for row in rows:
         for name, cell in zip(formats, row[2:]):
             unit = re.search(r" in (\S+)$", cell)
             for word in re.findall(r"`([^`]+)`", cell):
                 formats[name][word] = unit.group(1) if unit else row[1]
+                if "peridynamics" in row[0]:
+                    own.add(word)
     assert all(len(names) >= 10 for names in formats.values()), formats
-    return formats
+    return formats, own
 
 
-PAGE = columns_of_page()
+PAGE, OWN = columns_of_page()
 
 
-def run(folder, text):
-    """Of the last state positions and velocities in SI, and the types' names by particle."""
+def expected(form, shown=()):
+    return {name: unit for name, unit in PAGE[form].items() if name not in OWN or name in shown}
+
+
+def run(folder, text, *more):
+    """The summary, and of the last state positions and velocities in SI, and the types' names by particle."""
     scene = os.path.join(folder, "scene.toml")
     with open(scene, "w", encoding="utf-8") as file:
         file.write(text)
-    command = [os.path.join(PROGRAMS, "cuboct"), "run", scene, "--frames", "xyz,ase,vtp,lammps", "--si", "--quiet", "--out", folder]
+    command = [os.path.join(PROGRAMS, "cuboct"), "run", scene, "--frames", "xyz,ase,vtp,lammps", "--quiet", "--out", folder, *more]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
+    with open(f"{folder}/summary.json", encoding="utf-8") as file:
+        summary = {name: entry["value"] for name, entry in json.load(file).items()}
     with h5py.File(f"{folder}/trace.h5") as trace:
         names = trace["types"].asstr()[:]
+        if "bodies" in trace:
+            bodies = trace["bodies"]
+            return summary, bodies["x"][-len(bodies["type"]) :], bodies["v"][-len(bodies["type"]) :], names[bodies["type"][:]]
         rows = slice(int(trace["frames/first"][-2]), None)
-        return trace["frames/x_si"][rows], trace["frames/v_si"][rows], names[trace["frames/type"][rows]]
+        return summary, trace["frames/x_si"][rows], trace["frames/v_si"][rows], names[trace["frames/type"][rows]]
 
 
 def near(mine, its, digits, what):
@@ -98,15 +127,15 @@ def near(mine, its, digits, what):
     assert scale > 0 and np.abs(mine - its).max() <= digits * scale, what
 
 
-def check_ase(folder, x, v, types):
+def check_ase(folder, x, v, types, shown):
     """The frame of frames.xyz, with what ASE makes of frames.ase.xyz held against it."""
     frames = ase.io.read(f"{folder}/frames.xyz", ":")
     si, angstrom = frames[-1], ase.io.read(f"{folder}/frames.ase.xyz")
     for form, atoms in (("xyz", si), ("ase", angstrom)):
         names = {"species", "pos"} | set(atoms.arrays) - {"numbers", "positions"}
-        assert names == set(PAGE[form]), (form, names ^ set(PAGE[form]))
+        assert names == set(expected(form, shown)), (form, names ^ set(expected(form, shown)))
         units = dict(word.split(":") for word in atoms.info["units"].split())
-        told = {name: unit for name, unit in PAGE[form].items() if unit and name != "species"}
+        told = {name: unit for name, unit in expected(form, shown).items() if unit and name != "species"}
         assert {name: unit for name, unit in units.items() if name not in ("Time", "Lattice", "Origin")} == told, (form, units, told)
         assert units["Time"] == "s" and units["Lattice"] == units["pos"]
         assert np.array_equal(atoms.arrays["id"], np.arange(len(x)))
@@ -124,7 +153,7 @@ def check_ase(folder, x, v, types):
     return si, len(frames)
 
 
-def check_vtk(folder, x, v, types, si):
+def check_vtk(folder, x, v, types, shown, si):
     reader = vtkXMLPolyDataReader()
     last = sorted(name for name in os.listdir(folder) if name.endswith(".vtp"))[-1]
     reader.SetFileName(os.path.join(folder, last))
@@ -133,12 +162,12 @@ def check_vtk(folder, x, v, types, si):
     arrays = [body.GetPointData().GetArray(k) for k in range(body.GetPointData().GetNumberOfArrays())] + [body.GetPoints().GetData()]
     names = [array.GetName() for array in arrays]
     strings = {name: body.GetFieldData().GetAbstractArray(name) for name in ("material", "constraint")}
-    assert set(names) | set(strings) == set(PAGE["vtp"]), names
+    assert set(names) | set(strings) == set(expected("vtp", shown)), names
     units = {}
     for array in arrays:
         information = array.GetInformation() if array.HasInformation() else None
         units[array.GetName()] = (information.Get(vtkDataArray.UNITS_LABEL()) if information else None) or ""
-    assert units == {name: unit for name, unit in PAGE["vtp"].items() if name not in strings}, units
+    assert units == {name: unit for name, unit in expected("vtp", shown).items() if name not in strings}, units
     data = dict(zip(names, map(vtk_to_numpy, arrays)))
     near(data["position"], x, 1e-12, "positions of VTK")
     near(data["velocity"], v, 1e-6, "velocities of VTK")
@@ -152,16 +181,16 @@ def check_vtk(folder, x, v, types, si):
         places = [order.index(tensor.GetComponentName(k)) for k in range(6)]
         assert places == [0, 1, 2, 3, 5, 4]
         near(data["strain"], si.arrays["strain"][:, places], 1e-5, "strains of VTK")
-        for name in ("axial_strain", "radius", "broken_bonds", "id", "type_index"):
+        for name in ("axial_strain", "radius", "broken_bonds", "id", "type_index", *shown):
             assert np.allclose(data[name], si.arrays[name], rtol=1e-5, atol=1e-5 * np.abs(si.arrays[name]).max()), name
 
 
-def check_lammps(folder, x, v, types, si):
+def check_lammps(folder, x, v, types, shown, si):
     """read_dump takes the last frame in, write_dump puts it out. One more column is read as a charge."""
-    column = "axial_strain"
+    column = "damage" if "damage" in shown else "axial_strain"
     count = len(set(types))
     with h5py.File(f"{folder}/trace.h5") as trace:
-        step = int(trace["frames/step"][-1])
+        step = int(trace["bodies/step" if "bodies" in trace else "frames/step"][-1])
     script = f"""units si
 atom_style charge
 boundary f f f
@@ -183,21 +212,34 @@ write_dump all custom {folder}/again.dump id type x y z vx vy vz q modify sort i
         near(rows[:, 8], si.arrays[column], 1e-5, f"{column} of LAMMPS")
     dump = subprocess.run(["gzip", "-dc", f"{folder}/frames.dump.gz"], capture_output=True, text=True, check=True).stdout
     names = dump.split("ITEM: ATOMS ")[1].split("\n")[0].split()
-    assert set(names) == set(PAGE["lammps"]), names
+    assert set(names) == set(expected("lammps", shown)), names
     assert dump.startswith("ITEM: UNITS\nsi\n")
+
+
+def check(text, shown, *more):
+    with tempfile.TemporaryDirectory() as folder:
+        summary, x, v, types = run(folder, text, *more)
+        si, frames = check_ase(folder, x, v, types, shown) if ase else (None, 0)
+        if vtkXMLPolyDataReader:
+            check_vtk(folder, x, v, types, shown, si)
+        if LAMMPS:
+            check_lammps(folder, x, v, types, shown, si)
+        return summary, si, frames
 
 
 readers = [name for name, there in (("ASE", ase), ("LAMMPS", LAMMPS), ("VTK", vtkXMLPolyDataReader)) if there]
 if not readers:
     print("neither python3-ase nor lammps nor python3-vtk9")
     sys.exit(77)
-with tempfile.TemporaryDirectory() as directory:
-    positions, velocities, names = run(directory, BAR)
-    assert len(set(names)) > 3
-    bar, count = check_ase(directory, positions, velocities, names) if ase else (None, 0)
-    assert not ase or count > 1
-    if vtkXMLPolyDataReader:
-        check_vtk(directory, positions, velocities, names, bar)
-    if LAMMPS:
-        check_lammps(directory, positions, velocities, names, bar)
+_, bar, count = check(BAR, (), "--si")
+assert bar is None or (count > 1 and len(set(bar.arrays["type_index"])) > 2)
+summary, glass, _ = check(GLASS, ("dilatation", "damage"))
+if glass is not None:
+    damage = glass.arrays["damage"]
+    assert 0 < summary["mean_damage"] < summary["largest_damage"]
+    assert abs(damage.mean() / summary["mean_damage"] - 1) < 1e-5 and abs(damage.max() / summary["largest_damage"] - 1) < 1e-5
+    # Where nothing is gone, the volume's growth is the trace of the strain, to its first order.
+    whole = damage == 0
+    trace = glass.arrays["strain"][whole][:, :3].sum(axis=1)
+    assert whole.sum() > 20 and np.corrcoef(glass.arrays["dilatation"][whole], trace)[0, 1] > 0.9
 print(f"read by {', '.join(readers)}")

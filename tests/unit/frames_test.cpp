@@ -106,10 +106,12 @@ class Frames : public testing::Test {
       frame.strain = {0, 0.125 * k};
       frame.tensor = {{}, {0.25f, 0, 0, 0.5f, 0, -1e-3f}};
       frame.broken = {0, 3u * k};
+      frame.own = {{0, 0.25 * k}, {1, 2, 3, 4, 5, 6}};
       frames_.push_back(frame);
     }
     style_.radius = 0.5;
     style_.types = {frame_type("delrin", 1), frame_type("Cu/top grip", 2)};
+    style_.own = {{"damage", "1"}, {"flux", "J/m^2", kVectorNames}};
     style_.periodic = {Vec3(-1, 0, 0), Vec3(4, 0, 0)};
   }
   void TearDown() override { fs::remove_all(directory_); }
@@ -119,7 +121,7 @@ class Frames : public testing::Test {
   FrameStyle style_;
 };
 
-constexpr const char* kRest = "radius:R:1:axial_strain:R:1:strain:R:6:broken_bonds:I:1";
+constexpr const char* kRest = "radius:R:1:axial_strain:R:1:strain:R:6:broken_bonds:I:1:damage:R:1:flux:R:3";
 
 TEST_F(Frames, ExtendedXyzHoldsBoxColumnsUnitsAndTimes) {
   write_extended_xyz(directory_ / "f.xyz", frames_, style_);
@@ -130,17 +132,19 @@ TEST_F(Frames, ExtendedXyzHoldsBoxColumnsUnitsAndTimes) {
            "Properties=species:S:1:pos:R:3:id:I:1:type_index:I:1:material:S:1:constraint:S:1:velo:R:3:" +
            kRest +
            " units=\"Time:s Lattice:m Origin:m pos:m velo:m/s radius:m axial_strain:1 strain:1 "
-           "broken_bonds:1\" ";
+           "broken_bonds:1 "
+           "damage:1 flux:J/m^2\" ";
   };
   EXPECT_EQ(text_of(directory_ / "f.xyz"),
             head("3") +
                 "Step=0 Time=0\n"
-                "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
-                "Cu 1 2 3 1 1 Cu top_grip 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0\n" +
+                "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0 0 1 2 3\n"
+                "Cu 1 2 3 1 1 Cu top_grip 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0 0 4 5 6\n" +
                 head("4") +
                 "Step=10 Time=0.5\n"
-                "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0\n"
-                "Cu 1 3 3 1 1 Cu top_grip 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3\n");
+                "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0 0 1 2 3\n"
+                "Cu 1 3 3 1 1 Cu top_grip 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3 "
+                "0.25 4 5 6\n");
 }
 
 // Angstrom, u, and momenta in sqrt(u eV): 1 u at 1 sqrt(eV/u), 9822.694750 m/s, has 1.
@@ -161,20 +165,33 @@ TEST_F(Frames, ExtendedXyzMayBeInTheUnitsOfAse) {
             "Properties=species:S:1:pos:R:3:id:I:1:type_index:I:1:material:S:1:constraint:S:1:momenta:R:3:" +
                 std::string(kRest) +
                 ":masses:R:1 units=\"Time:s Lattice:angstrom Origin:angstrom pos:angstrom momenta:sqrt(u*eV) "
-                "radius:angstrom axial_strain:1 strain:1 broken_bonds:1 masses:u\" "
+                "radius:angstrom axial_strain:1 strain:1 broken_bonds:1 damage:1 flux:J/m^2 masses:u\" "
                 "Step=0 Time=0\n"
-                "X 0 0 0 0 0 delrin - 2 0 0 1 0 0 0 0 0 0 0 0 2\n"
-                "Cu 2 0 3 1 1 Cu - 0 0 -63 1 0 0.25 0 0 0.5 0 -0.001 0 63\n");
+                "X 0 0 0 0 0 delrin - 2 0 0 1 0 0 0 0 0 0 0 0 0 1 2 3 2\n"
+                "Cu 2 0 3 1 1 Cu - 0 0 -63 1 0 0.25 0 0 0.5 0 -0.001 0 0 4 5 6 63\n");
 }
 
 TEST(FrameTypes, ASpeciesIsAnElementOrX) {
-  EXPECT_EQ(frame_type("Cu", 1).species, "Cu");
-  EXPECT_EQ(frame_type("W/held", 1).species, "W");
+  const auto species = [](const std::string& name, const std::string& element = {}) {
+    return frame_type(name, 1, element).species;
+  };
+  EXPECT_EQ(species("Cu"), "Cu");
+  EXPECT_EQ(species("W/held"), "W");
   for (const char* other : {"Matter", "steel", "cu", "CU", "", "Si O", "i", "He Li"})
-    EXPECT_EQ(frame_type(other, 1).species, "X");
+    EXPECT_EQ(species(other), "X");
+  EXPECT_EQ(species("Matter/held", "Si"), "Si");
+  EXPECT_EQ(species("Cu/held", "Si"), "Si");  // the atoms are what the potential says
+  EXPECT_EQ(species("Matter", "Si1"), "X");   // a name of a file that is no symbol
   EXPECT_EQ(frame_type("a b/c d", 1).material, "a b");
   EXPECT_EQ(frame_type("a b/c d", 1).constraint, "c d");
   EXPECT_EQ(frame_type("a b", 1).constraint, "");
+}
+
+// A rule whose fields an engine did not hand over: they are not known.
+TEST_F(Frames, FieldsThatAreNotThereAreNoNumbers) {
+  frames_[0].own.clear();
+  write_extended_xyz(directory_ / "f.xyz", {frames_[0]}, style_);
+  EXPECT_TRUE(text_of(directory_ / "f.xyz").ends_with(" nan nan nan nan\n"));
 }
 
 TEST_F(Frames, ReducedUnitsAreCalledSo) {
@@ -207,9 +224,11 @@ TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
   EXPECT_EQ(values_of<float>(vtp, "strain"),
             (std::vector<float>{0, 0, 0, 0, 0, 0, 0.25f, 0, 0, 0.5f, -1e-3f, 0}));
   EXPECT_NE(vtp.find("ComponentName4=\"yz\" ComponentName5=\"xz\""), std::string::npos);
-  EXPECT_NE(vtp.find("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">m/s</InformationKey>"),
+  EXPECT_NE(vtp.find("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">J/m^2</InformationKey>"),
             std::string::npos);
   EXPECT_EQ(values_of<uint32_t>(vtp, "broken_bonds"), (std::vector<uint32_t>{0, 3}));
+  EXPECT_EQ(values_of<float>(vtp, "damage"), (std::vector<float>{0, 0.25f}));
+  EXPECT_EQ(values_of<float>(vtp, "flux"), (std::vector<float>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(values_of<uint8_t>(vtp, "type_index"), (std::vector<uint8_t>{0, 1}));
   EXPECT_EQ(values_of<uint32_t>(vtp, "offsets"), (std::vector<uint32_t>{1, 2}));
   EXPECT_NE(vtp.find("NumberOfPoints=\"2\""), std::string::npos);
@@ -224,12 +243,13 @@ TEST_F(Frames, LammpsDumpCountsFromOne) {
     return "ITEM: UNITS\nsi\nITEM: TIME\n" + time + "\nITEM: TIMESTEP\n" + step +
            "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp ff ff\n-1 3\n-0.5 " + y +
            "\n-0.5 3.5\nITEM: ATOMS id type x y z vx vy vz radius axial_strain strain_xx strain_yy strain_zz "
-           "strain_xy strain_xz strain_yz broken_bonds\n"
-           "1 1 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0\n";
+           "strain_xy strain_xz strain_yz broken_bonds damage flux_x flux_y flux_z\n"
+           "1 1 0 0 0 0 0 0 0.5 0 0 0 0 0 0 0 0 0 1 2 3\n";
   };
   EXPECT_EQ(unpacked(directory_ / "f.gz"),
-            head("0", "0", "2.5") + "2 2 1 2 3 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0\n" +
-                head("0.5", "10", "3.5") + "2 2 1 3 3 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3\n");
+            head("0", "0", "2.5") + "2 2 1 2 3 0 0.5 0 0.5 0 0.25 0 0 0.5 0 -0.001 0 0 4 5 6\n" +
+                head("0.5", "10", "3.5") +
+                "2 2 1 3 3 0 0.5 0 0.5 0.125 0.25 0 0 0.5 0 -0.001 3 0.25 4 5 6\n");
 }
 
 TEST_F(Frames, PackedXyzIsXyz) {
@@ -266,6 +286,7 @@ TEST_F(Frames, LargeFramesAreWhole) {
          << " 0.5 0.125 0 0 0 0 0 0 " << i << "\n";
     lines += line.str();
   }
+  style_.own.clear();
   write_vtk(directory_ / "f", {frame}, style_);
   const std::string vtp = text_of(directory_ / "f_000000.vtp");
   EXPECT_EQ(values_of<double>(vtp, "position"), position);
