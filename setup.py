@@ -27,7 +27,11 @@ class CMakeBuild(build_ext):
             )  # fmt: skip
         subprocess.run(["cmake", "--build", BUILD, "--target", "_cuboct"], check=True)
         built = next((BUILD / "python/cuboct").glob("_cuboct*.so"))
-        self.copy_file(str(built), self.get_ext_fullpath(extension.name))
+        place = Path(self.get_ext_fullpath(extension.name))
+        self.copy_file(str(built), str(place))
+        for part in ("cuboct-mesh.so", "cuboct-read-mesh"):  # what the module looks for beside itself
+            if (BUILD / part).exists():
+                self.copy_file(str(BUILD / part), str(place.with_name(part)))
 
 
 OWN.mkdir(parents=True, exist_ok=True)

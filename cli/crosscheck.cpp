@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cli/answer.h"
 #include "cli/command.h"
@@ -207,17 +208,6 @@ int Comparison::compare_all() {
   return end("all stopped", 1);
 }
 
-// The state in which all engines ended, for a run to begin with.
-void leave_state(const std::string& directory, const Loaded& loaded, Trace& trace) {
-  make_directory(directory);
-  const std::string path = directory + "/trace.h5";
-  const TraceHead head = head_of(loaded, false, false);
-  TraceWriter writer(path, temporary_beside(path), true, &head);
-  writer.add(trace.frames.back());
-  trace.frames.clear();
-  writer.finish(trace);
-}
-
 struct Crossed {
   int code = 0;
   bool reached = false;
@@ -248,7 +238,11 @@ Crossed cross_once(const Options& options, const std::string& leave) {
   Comparison comparison(options, loaded, traces);
   const int code = comparison.compare_all();
   Crossed crossed{code, traces[0].reached.has_value(), comparison.items()};
-  if (code == 0 && !leave.empty()) leave_state(leave, loaded, traces[0]);
+  if (code == 0 && !leave.empty()) {
+    const State last = std::move(traces[0].frames.back());
+    traces[0].frames.clear();
+    leave_state(leave, head_of(loaded, false, false), last, traces[0]);
+  }
   return crossed;
 }
 

@@ -9,9 +9,7 @@
 #include "emu/lattice/run.h"
 #include "hw/engine_kind.h"
 #include "hw/engines.h"
-#include "hw/rounds_kind.h"
-#include "model/rules/rounds_rule.h"
-#include "model/run/static_engine.h"
+#include "hw/scene_engine.h"
 
 namespace cuboct {
 namespace {
@@ -64,9 +62,7 @@ Recorded run_here(const EngineRow& row, const Loaded& loaded, const EngineOption
   if (row.here == Here::reference) {
     RealOptions real = options.real_options();
     real.threads = options.threads > 0 ? options.threads : reference_threads(scene.body.size());
-    if (scene.loading) return record(scene, static_kind(scene, plan, real), request);
-    if (rounds_of(scene.rule) != nullptr) return record(scene, rounds_kind(scene, plan, real), request);
-    return record(scene, reference_kind(scene, plan, real), request);
+    return record(scene, scene_reference_kind(scene, plan, real), request);
   }
   emu::LatticeRun run{request, {}};
   run.engine.threads = options.threads;
@@ -78,11 +74,7 @@ Recorded run_here(const EngineRow& row, const Loaded& loaded, const EngineOption
 EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded& loaded,
                      const EngineOptions& options, RunRequest request, const std::string& path, bool once) {
   const EngineRow& row = engine_row(engine);
-  if (row.here != Here::reference) {
-    refuse_static(loaded.scene, fmt::format("the {} engine", engine));
-    with_places(loaded.scene, loaded.setup.plan.arch,
-                [&] { refuse_rounds(loaded.scene.rule, fmt::format("the {} engine", engine)); });
-  }
+  check_runs(loaded.scene, loaded.setup.plan.arch, engine);
   if (!row.ranks.empty()) check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!options.checkpoint_every.empty()) read_interval(options.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = options.resume;

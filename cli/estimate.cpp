@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "hw/engines.h"
+#include "hw/scene_engine.h"
 #include "model/analysis/synopsis.h"
 #include "model/base/resources.h"
 #include "model/rules/rounds_rule.h"
@@ -90,7 +91,7 @@ double reading_time(const EngineRow& engine, const Scene& scene, double particle
 
 RunSize run_size(const Scene& scene) {
   RunSize size;
-  if (rounds_of(scene.rule) != nullptr || scene.loading) size.engine = "reference";
+  size.engine = engine_for(scene);
   size.steps = scene.steps;
   size.frame_every = scene.frame_every;
   size.probe_every = scene.probe_every;

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "hw/real_plan.h"
+#include "hw/scene_engine.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
 
@@ -11,9 +11,7 @@ namespace cuboct {
 
 Loaded load_any(const Input& input) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
-  const Arch arch = read_arch(input.arch);
-  loaded.setup.plan = rounds_of(loaded.scene.rule) != nullptr ? real_plan_of(loaded.scene, arch)
-                                                              : plan_of(loaded.scene, arch);
+  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch));
   return loaded;
 }
 

@@ -6,6 +6,7 @@
 #include <toml++/toml.h>
 #include <filesystem>
 #include <sstream>
+#include <variant>
 
 #include "hw/engine_kind.h"
 #include "model/analysis/crack.h"
@@ -15,6 +16,7 @@
 #include "model/base/output.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
+#include "model/trace/trace_file.h"
 
 namespace cuboct {
 namespace {
@@ -115,6 +117,15 @@ TraceHead head_of(const Loaded& loaded, bool real, bool si) {
   TraceHead head{loaded.scene, nullptr, nullptr, plan.origin, plan.arch.text, si};
   if (!real) head.rule = &plan.rule, head.lattice = &plan.lattice;
   return head;
+}
+
+void leave_state(const std::string& directory, const TraceHead& head, const RunState& last,
+                 const Trace& rest) {
+  make_directory(directory);
+  const std::string path = directory + "/trace.h5";
+  TraceWriter writer(path, temporary_beside(path), false, &head);
+  std::visit([&](const auto& state) { writer.add(state); }, last);
+  writer.finish(rest);
 }
 
 void write_record(const std::string& directory, const RunRecord& record) {

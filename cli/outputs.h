@@ -8,6 +8,7 @@
 
 #include "cli/command.h"
 #include "model/analysis/strain.h"
+#include "model/run/engine.h"
 #include "model/trace/frame.h"
 #include "model/trace/trace.h"
 #include "model/trace/trace_head.h"
@@ -25,6 +26,11 @@ FrameStyle frame_style(const Scene& scene);
 // What the trace of such a run says of itself. References to `loaded`.
 // `real`: of a run in real numbers, of which the plan says nothing.
 TraceHead head_of(const Loaded& loaded, bool real, bool si);
+
+// The last state of a run, as another can begin with it: DIR/trace.h5, which load_scene reads. `rest`:
+// without frames.
+void leave_state(const std::string& directory, const TraceHead& head, const RunState& last,
+                 const Trace& rest);
 
 // Frames in real units, with each particle's axial strain against the initial state.
 class FrameMaker {

@@ -18,12 +18,11 @@
 #include "cli/summary.h"
 #include "cli/view.h"
 #include "hw/engines.h"
+#include "hw/scene_engine.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/progress.h"
 #include "model/base/steps.h"
-#include "model/rules/rounds_rule.h"
-#include "model/run/start.h"
 
 namespace cuboct {
 namespace {
@@ -127,13 +126,11 @@ struct Ended {
 
 // With the engine that the scene asks for, where the command line names none.
 Options for_scene(Options options, const Scene& scene) {
-  if (options.engine.empty())
-    options.engine = scene.loading || rounds_of(scene.rule) != nullptr ? "reference" : "lattice";
+  if (options.engine.empty()) options.engine = engine_for(scene);
   options.engines.check({options.engine}, options.input);
-  if (!scene.loading) return options;
-  options.steps = scene.loading->whole(options.steps);
-  options.frame_every = scene.loading->whole(options.frame_every);
-  options.no_watch = true;  // it looks for what goes wrong in motion
+  options.steps = whole_steps(scene, options.steps);
+  options.frame_every = whole_steps(scene, options.frame_every);
+  if (scene.loading) options.no_watch = true;  // it looks for what goes wrong in motion
   return options;
 }
 
@@ -192,10 +189,7 @@ Ended run_once(const Options& given) {
                      .finish();
   Trace& trace = run.trace;
   trace.asked = steps;
-  if (scene.began)
-    trace.notes.emplace(
-        trace.notes.begin(), "begins at",
-        start_text(scene, real ? nullptr : &loaded.setup.plan.rule, loaded.setup.plan.origin));
+  note_start(trace, loaded, real);
   Items summary = summarise(loaded, run, real);
   add_end(summary, trace);
   // Run to its end, or to a fault, it has nothing left to do.

@@ -10,6 +10,7 @@
 #include "cli/advice.h"
 #include "model/analysis/motion_warnings.h"
 #include "model/analysis/tension.h"
+#include "model/run/start.h"
 #include "model/run/static_engine.h"
 #include "model/trace/cycles.h"
 
@@ -99,6 +100,13 @@ std::string reached_text(const Trace& trace) {
     if (curve.name == reached.curve && curve.unit != "1") unit = " " + curve.unit;
   return fmt::format("at step {}: {} is {:.6g}{}, {} {:.6g}{}", reached.step, reached.curve, reached.value,
                      unit, reached.side, reached.limit, unit);
+}
+
+void note_start(Trace& trace, const Loaded& loaded, bool real) {
+  if (!loaded.scene.began) return;
+  const Plan& plan = loaded.setup.plan;
+  trace.notes.emplace(trace.notes.begin(), "begins at",
+                      start_text(loaded.scene, real ? nullptr : &plan.rule, plan.origin));
 }
 
 void add_end(Items& items, const Trace& trace) {

@@ -17,6 +17,9 @@ void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curv
 // The reading that ended a run, "at step 9: tip.along is 0.0031 m, above 0.003 m".
 std::string reached_text(const Trace& trace);
 
+// Notes of a run that begins elsewhere than with the packing: where. `real`: in real numbers.
+void note_start(Trace& trace, const Loaded& loaded, bool real);
+
 // How the run ended, and where if that was too soon.
 void add_end(Items& items, const Trace& trace);
 

@@ -87,11 +87,15 @@ EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOption
   return kind;
 }
 
-EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+void check_static(const RealOptions& options) {
   if (options.precision == Precision::float32)
     throw InputError("static loading is in doubles: --precision float is not for it");
   if (options.integrator != Integrator::semi_implicit_euler)
     throw InputError("static loading has no motion to integrate: --integrator is not for it");
+}
+
+EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  check_static(options);
   EngineKind kind = static_kind(scene, scene.body, options.threads, plan.rule.cell_edge);
   kind.plan_hash = plan.hash;
   kind.nodes = plan.nodes();

@@ -26,7 +26,9 @@ EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& pl
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan);
 EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
-// Of a scene with static loading. InputError for floats, or velocity Verlet.
+// InputError for floats, or velocity Verlet, which static loading has not.
+void check_static(const RealOptions& options);
+// Of a scene with static loading, checked so.
 EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
 // Without a plan, from `start` instead of the scene's body. `cell_edge`: m, in which speeds are told.
 EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,

@@ -9,13 +9,18 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cli/summary.h"
 #include "cli/templates.h"
+#include "hw/scene_engine.h"
 #include "model/analysis/motion_warnings.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
+#include "model/base/module.h"
 #include "model/base/process.h"
 #include "model/base/spelling.h"
 #include "model/base/standard_streams.h"
+#include "model/base/utf8.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
 #include "model/trace/trace_head.h"
 #include "python/explore.h"
@@ -106,6 +111,7 @@ py::dict dict_of(const WholeRun& run) {
   for (const Finding& finding : trace.findings) warnings.append(finding.text);
   out["warnings"] = warnings;
   out["stopped"] = trace.stop ? py::cast(trace.stop->text) : py::none();
+  out["reached"] = trace.reached ? py::cast(reached_text(trace)) : py::none();
   out["summary"] = run.summary;
   return out;
 }
@@ -118,6 +124,8 @@ py::dict dict_of(const Comparison& comparison) {
   out["engines"] = comparison.engines;
   out["updates"] = comparison.updates;
   out["steps"] = comparison.steps;
+  out["reached"] = comparison.reached;
+  out["stopped"] = comparison.stopped;
   return out;
 }
 
@@ -131,7 +139,8 @@ py::tuple tuple_of(const Table& table) {
 
 py::dict check(const Sources& sources) {
   py::gil_scoped_release unlocked;
-  const Loaded loaded = load_plan(sources);
+  const Loaded loaded = load_plan(sources, true);
+  const std::vector<StageName> stages = stages_of(sources);
   py::gil_scoped_acquire locked;
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
@@ -141,13 +150,18 @@ py::dict check(const Sources& sources) {
   out["dt"] = scene.rule.dt;
   out["dt_limit"] = scene.dt_limit > 0 ? py::cast(scene.dt_limit) : py::none();
   out["steps"] = scene.steps;
-  out["cells"] = plan.lattice.size();
+  const bool machine = rounds_of(scene.rule) == nullptr;
+  out["cells"] = machine ? py::cast(plan.lattice.size()) : py::none();
   out["cell_edge"] = plan.rule.cell_edge;
-  out["nodes"] = plan.nodes();
+  out["nodes"] = machine ? py::cast(plan.nodes()) : py::none();
   out["plan_hash"] = hex(plan.hash);
   std::vector<std::string> warnings = motion_warnings(scene);
   warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());
   out["warnings"] = warnings;
+  out["engine"] = engine_for(scene);
+  py::list names;
+  for (const StageName& stage : stages) names.append(stage.name);
+  out["stages"] = names;
   return out;
 }
 
@@ -214,7 +228,23 @@ PYBIND11_MODULE(_cuboct, module) {
   py::register_exception_translator(translate);
   module.attr("version") = program_version();
 
-  py::class_<Sources>(module, "Sources").def(py::init<std::string, std::string, std::string, std::string>());
+  py::class_<Sources>(module, "Sources")
+      .def(py::init([](std::string scene, std::string scene_path, std::string arch, std::string arch_path) {
+        return Sources{std::move(scene), std::move(scene_path), std::move(arch), std::move(arch_path)};
+      }))
+      .def("at",
+           [](const Sources& sources, const std::string& stage, const std::string& from) {
+             Sources other = sources;
+             other.stage = stage;
+             other.from = from;
+             return other;
+           })
+      .def("read", &read_stage, Unlocked())
+      .def("stages", [](const Sources& sources) {
+        std::vector<std::pair<std::string, std::string>> names;  // of each part, and of its stage
+        for (const StageName& one : stages_of(sources)) names.emplace_back(one.name, one.stage);
+        return names;
+      });
 
   py::class_<Simulation>(module, "Simulation")
       .def(py::init([](const Sources& sources, const std::string& engine, const py::dict& options,
@@ -224,6 +254,19 @@ PYBIND11_MODULE(_cuboct, module) {
         return std::make_unique<Simulation>(sources, engine, choice, probe_every, anyway);
       }))
       .def("step", &Simulation::step, Unlocked())
+      .def("run", &Simulation::run, Unlocked())
+      .def("leave", &Simulation::leave, Unlocked())
+      .def("fields",
+           [](Simulation& simulation) {
+             std::vector<std::pair<std::string, std::vector<double>>> fields;
+             {
+               py::gil_scoped_release unlocked;
+               fields = simulation.fields();
+             }
+             py::dict out;
+             for (const auto& [name, values] : fields) out[name.c_str()] = array_of(values);
+             return out;
+           })
       .def("step_count", &Simulation::step_count, Unlocked())
       .def("state",
            [](Simulation& simulation) {
@@ -285,16 +328,17 @@ PYBIND11_MODULE(_cuboct, module) {
              }
              return py::bytes(png);
            })
+      .def_property_readonly("engine", &Simulation::engine)
       .def_property_readonly("dt", &Simulation::dt)
       .def_property_readonly("particles", &Simulation::particles)
-      .def_property_readonly("scene_steps", &Simulation::scene_steps)
       .def_property_readonly("title", &Simulation::title)
       .def_property_readonly("type_names", &Simulation::type_names)
       .def_property_readonly("type_masses", &Simulation::type_masses);
 
   module.def("run", [](const Sources& sources, const std::string& engine, const py::dict& options,
-                       std::optional<uint64_t> steps, std::optional<uint64_t> keep_every, bool anyway) {
-    const RunAsked asked{engine, options_of(options), steps, keep_every, anyway};
+                       std::optional<uint64_t> steps, std::optional<uint64_t> keep_every, bool anyway,
+                       const std::string& leave) {
+    const RunAsked asked{engine, options_of(options), steps, keep_every, anyway, leave};
     WholeRun result;
     {
       py::gil_scoped_release unlocked;
@@ -302,16 +346,17 @@ PYBIND11_MODULE(_cuboct, module) {
     }
     return dict_of(result);
   });
-  module.def("crosscheck", [](const Sources& sources, const std::vector<std::string>& engines,
-                              const py::dict& options, std::optional<uint64_t> steps) {
-    const EngineOptions choice = options_of(options);
-    Comparison result;
-    {
-      py::gil_scoped_release unlocked;
-      result = crosscheck(sources, engines, choice, steps);
-    }
-    return dict_of(result);
-  });
+  module.def("crosscheck",
+             [](const Sources& sources, const std::vector<std::string>& engines, const py::dict& options,
+                std::optional<uint64_t> steps, const std::string& leave) {
+               const EngineOptions choice = options_of(options);
+               Comparison result;
+               {
+                 py::gil_scoped_release unlocked;
+                 result = crosscheck(sources, engines, choice, steps, leave);
+               }
+               return dict_of(result);
+             });
   module.def("explore", [](const std::string& study, const std::string& out, int jobs, bool speed) {
     Table table;
     {
@@ -321,11 +366,16 @@ PYBIND11_MODULE(_cuboct, module) {
     return tuple_of(table);
   });
   module.def("check", check);
-  module.def("read_text", &read_config_text);
+  module.def("read_text", [](const std::string& path) {
+    std::string text = read_config_text(path);
+    check_utf8(text, path);
+    return text;
+  });
   module.def("check_toml",
              [](const std::string& text, const std::string& path) { parse_config(text, path); });
   module.def("template_text", &template_text);
   module.def("set_program_directory", &set_program_directory);
+  module.def("look_for_parts_in", &look_for_parts_in);
 }
 
 }  // namespace cuboct::python

@@ -6,12 +6,10 @@
 #include <utility>
 
 #include "cli/engine_run.h"
+#include "cli/outputs.h"
 #include "hw/engine_kind.h"
 #include "model/base/interrupt.h"
-#include "model/base/output.h"
 #include "model/run/start.h"
-#include "model/trace/trace_file.h"
-#include "model/trace/trace_head.h"
 
 namespace cuboct::python {
 namespace {
@@ -53,6 +51,7 @@ StopReason later(const StopReason& of, uint64_t before, const Lattice& theirs, c
 ProgramEngine::ProgramEngine(const Sources& sources, const std::string& engine, const EngineOptions& options,
                              const Scene& scene, const Setup& setup)
     : StateEngine(setting_of(scene, setup.plan, options.threads)),
+      sources_(sources),
       engine_(engine),
       options_(options),
       scene_(scene),
@@ -67,29 +66,24 @@ ProgramEngine::ProgramEngine(const Sources& sources, const std::string& engine, 
 // The state so far, as a run that ended.
 void ProgramEngine::leave_state() const {
   const Plan& plan = setup_.plan;
-  const TraceHead head{scene_, &plan.rule, &plan.lattice, plan.origin, plan.arch.text};
-  const std::string path = input_.from + "/trace.h5";
-  TraceWriter out(path, temporary_beside(path), false, &head);
-  out.add(state_);
   Trace rest;
   rest.engine = engine_;
   rest.plan_hash = plan.hash;
   rest.nodes = plan.nodes();
   rest.steps_done = state_.step;
-  out.finish(rest);
+  cuboct::leave_state(input_.from, {scene_, &plan.rule, &plan.lattice, plan.origin, plan.arch.text}, state_,
+                      rest);
 }
 
 // The scene and the plan that the program will make of it: its cells are those that can be reached from here.
 Loaded ProgramEngine::going_on() {
-  Loaded now{scene_, {}};
+  Sources at = sources_;
   if (state_.step > 0) {
-    input_.from = scratch_.path("from");
-    make_directory(input_.from);
+    at.from = input_.from = scratch_.path("from");
     leave_state();
-    begin_at(now.scene, input_.from);
   }
-  Plan& plan = now.setup.plan;
-  plan = plan_of(now.scene, read_arch(input_.arch));
+  Loaded now = load_plan(at);
+  const Plan& plan = now.setup.plan;
   if (now.scene.body.exact && !now.scene.body.exact->fits(plan.rule, plan.origin))
     throw InputError(fmt::format("the {} engine cannot go on from {}", engine_,
                                  start_text(now.scene, &plan.rule, plan.origin)),

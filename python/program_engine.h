@@ -34,6 +34,7 @@ class ProgramEngine : public StateEngine {
   void leave_state() const;
   bool take(State state, const Lattice& theirs, StopReason& lost);
 
+  const Sources sources_;
   const std::string engine_;
   const EngineOptions options_;
   const Scene& scene_;

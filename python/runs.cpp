@@ -7,9 +7,12 @@
 
 #include "cli/engine_run.h"
 #include "cli/estimate.h"
+#include "cli/outputs.h"
 #include "cli/run_engines.h"
 #include "cli/summary.h"
 #include "hw/engines.h"
+#include "hw/scene_engine.h"
+#include "model/analysis/meter.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/steps.h"
@@ -32,6 +35,15 @@ auto unless_interrupted(Work work) {
   }
 }
 
+// With the engine that the scene asks for, where none is named, and whole load steps.
+RunAsked for_scene(RunAsked asked, const Scene& scene) {
+  if (asked.engine.empty()) asked.engine = engine_for(scene);
+  asked.options.check({asked.engine}, {});
+  asked.steps = whole_steps(scene, asked.steps.value_or(scene.steps));
+  if (asked.keep_every) asked.keep_every = whole_steps(scene, *asked.keep_every);
+  return asked;
+}
+
 void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
   RunSize size = run_size(loaded.scene);
   size.engine = asked.engine;
@@ -46,23 +58,28 @@ void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
 
 }  // namespace
 
-WholeRun run(const Sources& sources, const RunAsked& asked) {
-  asked.options.check({asked.engine}, {});
+WholeRun run(const Sources& sources, const RunAsked& given) {
+  if (!given.engine.empty()) given.options.check({engine_row(given.engine).name}, {});
   const Loaded loaded = load_plan(sources);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
+  const RunAsked asked = for_scene(given, scene);
+  if (!asked.leave.empty()) refuse_bonds(scene);
   WholeRun result;
   result.dt = scene.rule.dt;
   RunRequest request;
-  request.steps = asked.steps.value_or(scene.steps);
+  request.steps = *asked.steps;
   if (!asked.anyway) check_size(loaded, asked, request.steps);
   request.probes = every_so_often(scene.probe_every, request.steps);
-  request.energies = request.totals = request.watch = true;
+  request.energies = request.totals = request.until = true;
+  request.watch = !scene.loading;  // it looks for what goes wrong in motion
   request.cycles = asked.options.cycles;
   request.hash_every = hashes_every(asked.engine, asked.options);
   request.frames = asked.keep_every ? every_so_often(*asked.keep_every, request.steps)
                                     : std::vector<uint64_t>{request.steps};
+  std::optional<RunState> last;
   request.keep = [&](const RunState& frame) {
+    if (!asked.leave.empty()) last = frame;
     if (const State* state = std::get_if<State>(&frame)) {
       result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin)});
     } else {
@@ -81,14 +98,18 @@ WholeRun run(const Sources& sources, const RunAsked& asked) {
   });
   if (!result.recorded.trouble.empty()) throw InputError(result.recorded.trouble);
   result.recorded.trace.asked = steps;
+  note_start(result.recorded.trace, loaded, asked.options.is_real(asked.engine));
   Items summary = summarise(loaded, result.recorded, asked.options.is_real(asked.engine));
   add_end(summary, result.recorded.trace);
+  if (last && !result.recorded.trace.stop)
+    leave_state(asked.leave, head_of(loaded, asked.options.is_real(asked.engine), false), *last,
+                result.recorded.trace);
   result.summary = summary.json();
   return result;
 }
 
 Comparison crosscheck(const Sources& sources, const std::vector<std::string>& engines,
-                      const EngineOptions& options, std::optional<uint64_t> steps) {
+                      const EngineOptions& options, std::optional<uint64_t> steps, const std::string& leave) {
   for (const std::string& engine : engines) engine_row(engine, true);
   if (std::set(engines.begin(), engines.end()).size() != engines.size() || engines.size() < 2)
     throw InputError("a crosscheck needs two or more different engines", "engines=[\"golden\", \"lattice\"]");
@@ -100,7 +121,9 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   const CatchFromPython catching;
   RunRequest request;
   request.steps = steps.value_or(loaded.scene.steps);
-  const std::vector<Trace> traces = unless_interrupted([&] {
+  if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, request.steps);
+  if (!leave.empty()) request.frames = {request.steps};
+  std::vector<Trace> traces = unless_interrupted([&] {
     return run_all({input, options, loaded, scratch.path("")}, engines, request);
   });
   Comparison result;
@@ -127,7 +150,19 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   result.updates = updates_compared(traces[0], plan.particles);
   result.text = fmt::format("matched {} updates over {} steps in {} engines", result.updates, result.steps,
                             traces.size());
-  if (traces[0].stop) result.text += "\nall stopped: " + traces[0].stop->text;
+  if (traces[0].stop) {
+    result.stopped = true;
+    result.text += "\nall stopped: " + traces[0].stop->text;
+  }
+  if (traces[0].reached) {
+    result.reached = true;
+    result.text += "\nall ended " + reached_text(traces[0]);
+  }
+  if (!leave.empty() && !traces[0].stop) {
+    const State last = std::move(traces[0].frames.back());
+    traces[0].frames.clear();
+    leave_state(leave, head_of(loaded, false, false), last, traces[0]);
+  }
   return result;
 }
 

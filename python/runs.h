@@ -14,11 +14,12 @@
 namespace cuboct::python {
 
 struct RunAsked {
-  std::string engine;
+  std::string engine;  // empty: the one that the scene asks for
   EngineOptions options;
   std::optional<uint64_t> steps;       // the scene's
   std::optional<uint64_t> keep_every;  // states; nothing: the last alone
   bool anyway = false;                 // though it needs more memory than is free
+  std::string leave;  // a directory for the last state, where another run may begin; empty: none
 };
 
 // A state in SI, by ids.
@@ -43,9 +44,11 @@ struct Comparison {
   std::optional<uint64_t> step;                                // of the first difference, where it has one
   std::optional<std::pair<std::string, std::string>> engines;  // that differ
   uint64_t updates = 0, steps = 0;                             // compared
+  bool reached = false, stopped = false;  // by the scene's `until`; by a fault, all alike
 };
 
+// `leave`: as RunAsked has it, where all engines matched.
 Comparison crosscheck(const Sources& sources, const std::vector<std::string>& engines,
-                      const EngineOptions& options, std::optional<uint64_t> steps);
+                      const EngineOptions& options, std::optional<uint64_t> steps, const std::string& leave);
 
 }  // namespace cuboct::python

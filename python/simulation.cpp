@@ -10,12 +10,14 @@
 #include "cli/outputs.h"
 #include "hw/engine_kind.h"
 #include "hw/engines.h"
+#include "hw/scene_engine.h"
 #include "model/analysis/crack.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
 #include "model/run/golden_engine.h"
-#include "model/run/reference_engine.h"
-#include "model/run/static_engine.h"
+#include "model/run/rounds_run.h"
+#include "model/scene/static_loading.h"
 #include "model/trace/raster_plot.h"
 #include "python/catch_interrupt.h"
 #include "python/program_engine.h"
@@ -59,6 +61,10 @@ void give_velocity(Rule& rule, const std::string& constraint, const Vec3& veloci
                                    : "one of " + list_of(names));
 }
 
+std::string text_of(const Vec3& value) {
+  return fmt::format("[{:g}, {:g}, {:g}]", value[0], value[1], value[2]);
+}
+
 void check_finite(const Vec3& value, const char* what) {
   if (!value.allFinite()) throw InputError(fmt::format("{} is not finite", what));
 }
@@ -67,23 +73,30 @@ void check_finite(const Vec3& value, const char* what) {
 
 Simulation::Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
                        std::optional<uint64_t> probe_every, bool anyway)
-    : engine_name_(engine),
-      options_(options),
-      sources_(sources),
-      real_(options.is_real(engine)),
-      program_(engine_row(engine).here == Here::none || options.ranks > 1) {
-  options.check({engine}, {});
-  Loaded loaded = load(sources);
-  refuse_static(loaded.scene, "steps from Python");
+    : engine_name_(engine), options_(options), sources_(sources) {
+  if (!engine.empty()) options.check({engine_row(engine).name}, {});
+  Loaded loaded = load_plan(sources);
+  if (engine.empty()) engine_name_ = engine_for(loaded.scene);
+  options.check({engine_name_}, {});
+  check_runs(loaded.scene, loaded.setup.plan.arch, engine_name_);
   check_workers(options.threads, options.ranks, loaded.setup.plan);
-  if (!anyway) check_size(loaded, engine, options);
+  if (!anyway) check_size(loaded, engine_name_, options);
+  real_ = options.is_real(engine_name_);
+  program_ = engine_row(engine_name_).here == Here::none || options.ranks > 1;
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
-  probe_every_ = probe_every.value_or(scene_.probe_every);
-  if (real_ && !program_) start_ = scene_.body, setup_.initial = {};
-  make_engine();
-  const EngineKind kind =
-      real_ ? real_kind(engine, scene_, setup_.plan, false) : fixed_kind(engine, scene_, setup_.plan);
+  probe_every_ = whole_steps(scene_, probe_every.value_or(scene_.probe_every));
+  if (real_ && !program_)
+    start_ = scene_.body;
+  else
+    setup_.initial = begin_of(scene_, setup_.plan, nullptr);
+  try {
+    make_engine();
+  } catch (const StepError& error) {
+    throw Stopped(error.reason, "");
+  }
+  const EngineKind kind = real_ ? real_kind(engine_name_, scene_, setup_.plan, false)
+                                : fixed_kind(engine_name_, scene_, setup_.plan);
   meter_.emplace(scene_, kind.initial, MeterOptions{.energies = true, .threads = options.threads});
   if (probe_every_ > 0) read_probes();
 }
@@ -99,8 +112,7 @@ void Simulation::make_engine() {
   } else if (here == Here::reference) {
     RealOptions real = options_.real_options();
     real.threads = options_.threads > 0 ? options_.threads : reference_threads(start_.size());
-    real.first_step = first_step_;
-    engine_ = std::make_unique<ReferenceEngine>(scene_, start_, real, plan.rule.cell_edge);
+    engine_ = scene_reference(scene_, start_, real, plan.rule.cell_edge, first_step_, own_);
   } else if (here == Here::golden) {
     engine_ = std::make_unique<GoldenEngine>(setting_of(scene_, plan, options_.threads), plan.arch.capacity,
                                              setup_.initial);
@@ -143,9 +155,24 @@ uint64_t Simulation::piece(uint64_t steps) const {
 
 void Simulation::step(uint64_t steps) {
   const std::lock_guard lock(mutex_);
+  go_to(now() + steps, false);
+}
+
+void Simulation::run() {
+  const std::lock_guard lock(mutex_);
+  go_to(scene_.steps, true);
+}
+
+// Whether the last reading of the probes says that the scene's run is over.
+bool Simulation::is_over() const {
+  if (!scene_.until || now() <= scene_.until->after) return false;
+  const std::optional<double> value = meter_->latest_of(scene_.until->curve);
+  return value && scene_.until->holds(*value);
+}
+
+void Simulation::go_to(uint64_t end, bool until) {
   const CatchFromPython catching;
-  const uint64_t end = now() + steps;
-  while (now() < end) {
+  while (now() < end && !(until && is_over())) {
     if (interrupted()) throw Interrupted();
     const uint64_t asked = piece(end - now()), wanted = now() + asked;
     advance(asked);
@@ -208,6 +235,27 @@ std::vector<Curve> Simulation::curves() {
   return meter_->curves();
 }
 
+void Simulation::leave(const std::string& directory) {
+  const std::lock_guard lock(mutex_);
+  refuse_bonds(scene_);
+  const Plan& plan = setup_.plan;
+  TraceHead head{scene_, nullptr, nullptr, plan.origin, plan.arch.text};
+  if (!real_) head.rule = &plan.rule, head.lattice = &plan.lattice;
+  Trace rest;
+  rest.engine = engine_name_;
+  rest.plan_hash = plan.hash;
+  rest.nodes = plan.nodes();
+  rest.steps_done = now();
+  leave_state(directory, head, engine_->frame(false), rest);
+}
+
+std::vector<std::pair<std::string, std::vector<double>>> Simulation::fields() {
+  const std::lock_guard lock(mutex_);
+  const auto* rounds = dynamic_cast<const RoundsRun*>(engine_.get());
+  if (rounds == nullptr || !rounds->breaks()) return {};
+  return {{"damage", rounds->damage()}};
+}
+
 std::vector<std::string> Simulation::type_names() const {
   std::vector<std::string> names;
   for (const ParticleType& type : scene_.rule.types) names.push_back(type.name);
@@ -223,50 +271,59 @@ std::vector<double> Simulation::type_masses() const {
 
 void Simulation::set_velocity(const std::string& constraint, const Vec3& velocity) {
   check_finite(velocity, "the velocity");
-  change([&](Rule& rule) { give_velocity(rule, constraint, velocity); });
+  change(fmt::format("set_velocity('{}', {})", constraint, text_of(velocity)),
+         [&](Rule& rule) { give_velocity(rule, constraint, velocity); });
 }
 
 void Simulation::set_gravity(const Vec3& gravity) {
   check_finite(gravity, "gravity");
-  change([&](Rule& rule) {
+  change(fmt::format("set_gravity({})", text_of(gravity)), [&](Rule& rule) {
     for (ParticleType& type : rule.types) type.gravity = gravity + type.pull;
   });
 }
 
-// All that can be refused is, before anything changes.
-void Simulation::change(const std::function<void(Rule&)>& edit) {
+// All that can be refused is, before anything changes. What is wrong stands in the call, not in the scene.
+void Simulation::change(const std::string& call, const std::function<void(Rule&)>& edit) {
   const std::lock_guard lock(mutex_);
   if (program_)
     throw InputError(
         fmt::format("the {} engine is a program that reads the scene: nothing of it can change on the way",
                     engine_name_),
         "golden and lattice take changes, and have the same bits");
+  refuse_bonds(scene_);
   Scene changed = scene_;
   edit(changed.rule);
+  const auto of_call = [&](auto check) {
+    try {
+      check();
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", call, bare_message(error)), parts_of(error).hint);
+    }
+  };
+  if (changed.loading) of_call([&] { refuse_tearing(changed, *changed.loading); });
   strain();  // its initial positions are those of the plan so far
-  first_step_ = now();
   if (real_) {
-    start_ = static_cast<const ReferenceEngine&>(*engine_).body();
+    start_ = *engine_->saved_body();
+    own_ = engine_->memory().own;
   } else {
     const RunState frame = engine_->frame(false);
     const State& state = std::get<State>(frame);
     const Plan& plan = setup_.plan;
     changed.body = to_real(state, plan.rule, plan.lattice, plan.origin);
-    setup_ = going_on(changed, plan, state);
+    of_call([&] { setup_ = going_on(changed, plan, state); });
   }
+  first_step_ = now();
   scene_.rule = std::move(changed.rule);
   make_engine();
 }
 
 const StrainMeter& Simulation::strain() {
   if (strain_) return *strain_;
-  if (real_) return strain_.emplace(strain_meter(scene_, scene_.body.x));
-  const Plan& plan = setup_.plan;
+  if (real_) return strain_.emplace(strain_meter(scene_, scene_.packing().x));
   std::vector<Vec3> initial;
   initial.reserve(scene_.body.size());
   for (uint32_t id = 0; id < scene_.body.size(); ++id)
-    initial.push_back(position_of(plan.rule, plan.lattice, plan.origin,
-                                  fixed_particle(scene_.body, id, plan.rule, plan.lattice, plan.origin)));
+    initial.push_back(packed_place(scene_, setup_.plan, id));
   return strain_.emplace(strain_meter(scene_, initial));
 }
 

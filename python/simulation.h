@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/engine_options.h"
@@ -37,13 +38,15 @@ struct EnergiesNow {
 
 class Simulation {
  public:
-  // `probe_every`: steps between two readings of probes and energies, 0: none; nothing: the scene's.
-  // `anyway`: though it needs more memory than is free.
+  // An empty `engine`: the one that the scene asks for. `probe_every`: steps between two readings of probes
+  // and energies, 0: none; nothing: the scene's. `anyway`: though it needs more memory than is free.
   Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
              std::optional<uint64_t> probe_every, bool anyway = false);
 
-  // Throws Stopped, and Interrupted after a whole step.
+  // Throw Stopped, and Interrupted after a whole step. Of static loading a step moves the load's count, and
+  // the body follows at whole load steps.
   void step(uint64_t steps);
+  void run();  // to the scene's last step, or to where its `until` holds
 
   uint64_t step_count();
   Body body();      // the index is the particle's id; velocities live half a step before the positions, but
@@ -52,6 +55,9 @@ class Simulation {
   uint64_t plan_hash();
   EnergiesNow energies();
   std::vector<Curve> curves();
+  void leave(const std::string& directory);  // the present state, where another run may begin
+  // By particle: "damage", of bonds that break the share that is broken; none of other rules.
+  std::vector<std::pair<std::string, std::vector<double>>> fields();
 
   // m/s, of all particles that the constraint holds or moves, from the next step on.
   void set_velocity(const std::string& constraint, const Vec3& velocity);
@@ -61,16 +67,18 @@ class Simulation {
   std::string picture(const std::string& field, double limit, int width);
 
   // Never change.
+  const std::string& engine() const { return engine_name_; }
   bool real() const { return real_; }
   double dt() const { return scene_.rule.dt; }
   uint64_t particles() const { return scene_.body.size(); }
-  uint64_t scene_steps() const { return scene_.steps; }
   const std::string& title() const { return scene_.title; }
   std::vector<std::string> type_names() const;
   std::vector<double> type_masses() const;  // kg
 
  private:
   void make_engine();
+  void go_to(uint64_t end, bool until);
+  bool is_over() const;
   void advance(uint64_t steps);
   [[noreturn]] void stop(const StopReason& reason);
   void read_probes();
@@ -78,18 +86,19 @@ class Simulation {
   const Body& present();
   const StrainMeter& strain();
   uint64_t piece(uint64_t steps) const;
-  void change(const std::function<void(Rule&)>& edit);
+  void change(const std::string& call, const std::function<void(Rule&)>& edit);
   uint64_t now() const { return engine_->step_count(); }
 
   std::mutex mutex_;
   Scene scene_;  // its body is the initial one
   Setup setup_;  // the state is that from which the engine was made
-  Body start_;   // the same of an engine in real numbers
+  Body start_;   // the same of an engine in real numbers, and what else it kept there
+  std::vector<uint64_t> own_;
   std::string engine_name_;
   EngineOptions options_;
   Sources sources_;
-  bool real_, program_;                    // program_: the engine is one
-  uint64_t first_step_ = 0, probe_every_;  // of the engine
+  bool real_ = false, program_ = false;        // program_: the engine is one
+  uint64_t first_step_ = 0, probe_every_ = 0;  // of the engine
   emu::LatticeChoice lattice_;
   std::unique_ptr<Engine> engine_;
   std::optional<Meter> meter_;

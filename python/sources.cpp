@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "python/sources.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "hw/scene_engine.h"
+#include "model/base/error.h"
 #include "model/base/output.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/start.h"
+#include "model/scene/config.h"
 
 namespace cuboct::python {
 namespace {
@@ -10,23 +19,48 @@ Arch arch_of(const Sources& sources) {
   return sources.arch.empty() ? read_arch("") : parse_arch(sources.arch, sources.arch_path);
 }
 
+std::string stage_of(const Sources& sources) {
+  if (!sources.stage.empty()) return sources.stage;
+  const std::vector<StageName> names = stages_of(sources);
+  return names.empty() ? "" : names.front().name;
+}
+
+bool is_in_file(const std::string& text, const std::string& path) {
+  return std::filesystem::is_regular_file(path) && read_config_text(path) == text;
+}
+
 }  // namespace
 
-Loaded load(const Sources& sources) {
-  Loaded loaded{parse_scene(sources.scene, sources.scene_path), {}};
-  loaded.setup = make_setup(loaded.scene, arch_of(sources));
+Loaded load_plan(const Sources& sources, bool looks_only) {
+  Loaded loaded{load_scene(sources.scene, sources.scene_path, {stage_of(sources), sources.from, looks_only}),
+                {}};
+  loaded.setup.plan = scene_plan_of(loaded.scene, arch_of(sources));
   return loaded;
 }
 
-Loaded load_plan(const Sources& sources) {
-  Loaded loaded{parse_scene(sources.scene, sources.scene_path), {}};
-  loaded.setup.plan = plan_of(loaded.scene, arch_of(sources));
-  return loaded;
+std::vector<StageName> stages_of(const Sources& sources) {
+  return stages_in(sources.scene, sources.scene_path);
+}
+
+void read_stage(const Sources& sources) {
+  parse_scene(sources.scene, sources.scene_path, {.begins = true, .stage = stage_of(sources)});
+}
+
+void refuse_bonds(const Scene& scene) {
+  const RoundsRule* rule = rounds_of(scene.rule);
+  if (rule != nullptr && rule->declaration().bonds == BondRange::reference)
+    throw InputError(fmt::format("bonds of the rule '{}' keep what they went through, and would lose it here",
+                                 rule->declaration().name));
 }
 
 Input write_sources(const Sources& sources, const Scratch& scratch) {
-  Input input{.scene = scratch.path("scene.toml"), .arch = {}};
-  write_text(input.scene, sources.scene);
+  Input input{.scene = sources.scene_path, .arch = {}};
+  input.stage = stage_of(sources);
+  input.from = sources.from;
+  if (!is_in_file(sources.scene, sources.scene_path)) {
+    input.scene = scratch.path("scene.toml");
+    write_text(input.scene, sources.scene);
+  }
   if (sources.arch.empty()) return input;
   input.arch = scratch.path("arch.toml");
   write_text(input.arch, sources.arch);

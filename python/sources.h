@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "model/base/process.h"
@@ -13,14 +14,22 @@ namespace cuboct::python {
 struct Sources {
   std::string scene, scene_path;
   std::string arch, arch_path;  // an empty text: the defaults
+  std::string stage{}, from{};  // model/run/start.h; an empty stage: the first, where the scene has stages
 };
 
-// Throw InputError with the place in the text. The second without `setup.initial`.
-Loaded load(const Sources& sources);
-Loaded load_plan(const Sources& sources);
+// The scene with its plan, or what stands for one. Throws InputError with the place in the text.
+// `looks_only`: a later stage may do without `from`.
+Loaded load_plan(const Sources& sources, bool looks_only = false);
+std::vector<StageName> stages_of(const Sources& sources);
+// Throws InputError where the stage cannot be read, wherever it is to begin.
+void read_stage(const Sources& sources);
 
-// The same as files, which programs read.
+// The same as files, which programs read: the scene's own where it is what the file holds, so that paths
+// within count from there.
 Input write_sources(const Sources& sources, const Scratch& scratch);
+
+// InputError where another run would begin without what the bonds of a rule of rounds went through.
+void refuse_bonds(const Scene& scene);
 
 // Ctrl-C ended what was asked for.
 class Interrupted : public std::exception {};

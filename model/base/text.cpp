@@ -11,6 +11,7 @@
 
 #include "model/base/error.h"
 #include "model/base/hash.h"
+#include "model/base/utf8.h"
 
 namespace cuboct {
 namespace {
@@ -117,6 +118,15 @@ bool is_blank(uint32_t c) {
 }
 
 }  // namespace
+
+size_t not_utf8(std::string_view text) {
+  for (size_t at = 0; at < text.size();) {
+    const Symbol symbol = symbol_at(text, at);
+    if (!symbol.valid) return at;
+    at += symbol.bytes.size();
+  }
+  return std::string_view::npos;
+}
 
 std::string line_text(const std::string& text) { return shown(text, ""); }
 

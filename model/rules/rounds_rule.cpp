@@ -13,7 +13,7 @@ namespace {
 [[noreturn]] void refuse(const RoundsRule& rule, const std::string& who) {
   throw InputError(fmt::format("the rule '{}' has {} rounds, and {} knows the pair law alone",
                                rule.declaration().name, rule.declaration().rounds.size(), who),
-                   "'cuboct run' with the reference engine runs it")
+                   "the reference engine runs it")
       .about({"rule.kind"});
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "model/analysis/body_reading.h"
@@ -110,6 +111,17 @@ const Body* RoundsRun::saved_body() {
 }
 
 EngineMemory RoundsRun::memory() { return {{static_cast<uint64_t>(options_->precision)}, {}}; }
+
+bool RoundsRun::breaks() const {
+  const RoundsRule& rule = *rounds_of(scene_.rule);
+  return rule.declaration().bonds == BondRange::reference && std::isfinite(rule.bond_reach());
+}
+
+std::vector<double> RoundsRun::damage() const {
+  std::vector<double> damage(body_.size());
+  for (size_t i = 0; i < damage.size(); ++i) damage[i] = engine_->terms()->damage(i);
+  return damage;
+}
 
 EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {
   EngineKind kind;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "model/run/engine.h"
 #include "model/run/record.h"
@@ -32,6 +33,10 @@ class RoundsRun : public Engine {
   Notes notes() override;
   const Body* saved_body() override;
   EngineMemory memory() override;
+
+  // Whether the rule's bonds can break; of each particle's the share that did, as the last step left it.
+  bool breaks() const;
+  std::vector<double> damage() const;
 
  private:
   const Body& body();

@@ -7,6 +7,8 @@
 
 #include "model/base/error.h"
 #include "model/rules/rounds_rule.h"
+#include "model/scene/config.h"
+#include "model/scene/scene_parts.h"
 #include "model/trace/left_state.h"
 #include "model/trace/trace_head.h"
 
@@ -99,9 +101,13 @@ void begin_at(Scene& scene, const std::string& directory) {
 }
 
 Scene load_scene(const std::string& path, const StartChoice& choice) {
-  Scene scene = read_scene(path, {.begins = true, .stage = choice.stage});
+  return load_scene(read_config_text(path), path, choice);
+}
+
+Scene load_scene(const std::string& text, const std::string& path, const StartChoice& choice) {
+  Scene scene = parse_scene(text, path, {.begins = true, .stage = choice.stage});
   std::string from = choice.from;
-  const bool first = scene.stage.empty() || stages_of(path).front().name == scene.stage;
+  const bool first = scene.stage.empty() || stages_in(text, path).front().name == scene.stage;
   if (from.empty() && first && !scene.start.empty())
     from = (fs::path(path).parent_path() / scene.start).lexically_normal().string();
   if (from.empty() && !first && !choice.looks_only)
@@ -109,6 +115,10 @@ Scene load_scene(const std::string& path, const StartChoice& choice) {
         "stage '{}' begins where the stage before it ended: --from DIR says where that is", scene.stage));
   if (!from.empty()) begin_at(scene, from);
   return scene;
+}
+
+std::vector<StageName> stages_in(const std::string& text, const std::string& path) {
+  return stage_names(parse_config(text, path));
 }
 
 std::string start_text(const Scene& scene, const FixedRule* rule, const Vec3& origin) {

@@ -20,6 +20,11 @@ struct StartChoice {
 // Throws InputError where scene or state cannot be read, or the state is that of other particles. A stage but
 // the first begins at `from`.
 Scene load_scene(const std::string& path, const StartChoice& choice);
+// The same for text in memory; `path` stands in messages, and what [start] names is counted from its
+// directory.
+Scene load_scene(const std::string& text, const std::string& path, const StartChoice& choice);
+// stages_of() such a text.
+std::vector<StageName> stages_in(const std::string& text, const std::string& path);
 
 // The end of a run in `directory` becomes the beginning of the scene.
 void begin_at(Scene& scene, const std::string& directory);

@@ -10,11 +10,13 @@
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
 #include "model/base/text.h"
+#include "model/base/utf8.h"
 
 namespace cuboct {
 namespace {
 
 toml::table parsed(const std::string& text, const std::string& path) {
+  check_utf8(text, path);
   try {
     return toml::parse(text, path);
   } catch (const toml::parse_error& error) {

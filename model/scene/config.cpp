@@ -17,6 +17,7 @@
 #include "model/base/excerpt.h"
 #include "model/base/input_file.h"
 #include "model/base/spelling.h"
+#include "model/base/utf8.h"
 
 namespace cuboct {
 
@@ -163,6 +164,11 @@ void check_keys(const ConfigFile& file) {
       parts = 1;
     }
   }
+}
+
+// The byte-order mark in UTF-8.
+void drop_mark(std::string& text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
 }
 
 void check_asked(const ConfigFile& file, const ConfigNode& node) {
@@ -494,6 +500,8 @@ ConfigTable parse_config(std::string text, const std::string& path) {
   auto file = std::make_shared<ConfigFile>();
   file->path = path;
   file->text = std::move(text);
+  drop_mark(file->text);
+  check_utf8(file->text, path);
   check_keys(*file);
   try {
     file->root = convert(toml::parse(file->text, path), "", "");
@@ -508,7 +516,13 @@ ConfigTable parse_config(std::string text, const std::string& path) {
   return root;
 }
 
-std::string read_config_text(const std::string& path) { return read_input(path); }
+std::string read_config_text(const std::string& path) {
+  std::string text = read_input(path);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw InputError(fmt::format("{}: this file is in UTF-16", path), "save it as UTF-8");
+  drop_mark(text);
+  return text;
+}
 
 ConfigTable read_config(const std::string& path) { return parse_config(read_config_text(path), path); }
 

@@ -15,7 +15,7 @@ namespace {
 
 ReadMesh* find_reader() {
   void* const reader = module_symbol(kMeshModule, kReadMesh);
-  if (reader != nullptr && !beside(kMeshReader).empty()) return reinterpret_cast<ReadMesh*>(reader);
+  if (reader != nullptr && !part_path(kMeshReader).empty()) return reinterpret_cast<ReadMesh*>(reader);
   throw InputError("this cuboct reads no meshes: it was built without Embree and Assimp",
                    "install libembree-dev and libassimp-dev, and build again");
 }
@@ -66,7 +66,7 @@ Mesh read_mesh(const std::string& file, std::optional<double> unit) {
   static ReadMesh* const reader = find_reader();
   const Scratch scratch;
   const std::string triangles = scratch.path("triangles");
-  read_guarded(beside(kMeshReader), file, triangles, reader_limits(std::filesystem::file_size(file)));
+  read_guarded(part_path(kMeshReader), file, triangles, reader_limits(std::filesystem::file_size(file)));
   Mesh mesh;
   mesh.facts.file = file;
   std::string error;

@@ -152,6 +152,8 @@ double stable_time_step(const Rule& rule, const std::function<double(const PairL
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene);
 
+// stages_of() a file that is read.
+std::vector<StageName> stage_names(const ConfigTable& root);
 // [start].
 void read_start(const ConfigTable& root, const SceneChoice& choice, Scene& scene);
 // The stage that is chosen; none where the file has none.

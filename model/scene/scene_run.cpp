@@ -8,6 +8,7 @@
 #include "model/base/error.h"
 #include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
+#include "model/scene/static_loading.h"
 
 namespace cuboct {
 namespace {
@@ -70,6 +71,8 @@ CurveOf curve_at(const ConfigValue& value, const Scene& scene) {
 // Each is a directory and a summary.
 constexpr int64_t kMostParts = 100;
 
+}  // namespace
+
 std::vector<StageName> stage_names(const ConfigTable& root) {
   std::vector<StageName> names;
   for (const ConfigTable& table : root.tables("stage")) {
@@ -87,6 +90,8 @@ std::vector<StageName> stage_names(const ConfigTable& root) {
   }
   return names;
 }
+
+namespace {
 
 std::string texts_of(const std::vector<StageName>& names) {
   std::string text;
@@ -154,11 +159,8 @@ std::optional<StagePart> read_stage(const ConfigTable& root, const SceneChoice& 
   return chosen;
 }
 
-namespace {
-
-// What a load step moves it moves at once, before the body follows: bonds that are out of reach then are
-// torn.
-void refuse_tearing(const ConfigValue& value, const StaticLoading& loading, const Scene& scene) {
+void refuse_tearing(const Scene& scene, const StaticLoading& loading) {
+  if (scene.pitch == 0) return;
   double fastest = 0;
   for (const ParticleType& type : scene.rule.types)
     if (!type.pd) fastest = std::max(fastest, type.velocity.norm());
@@ -166,14 +168,12 @@ void refuse_tearing(const ConfigValue& value, const StaticLoading& loading, cons
   const double most = (scene.rule.cutoff() - scene.pitch) / 2;
   if (travel <= most) return;
   const double steps = std::ceil(static_cast<double>(scene.steps / loading.every) * travel / most);
-  value.fail(
+  throw InputError(
       fmt::format(
           "a load step moves a constraint by {:.3g} pitches at once, {:.3g} may do without tearing bonds",
           travel / scene.pitch, most / scene.pitch),
       fmt::format("load_steps = {:.0f} or more", steps));
 }
-
-}  // namespace
 
 std::optional<StaticLoading> read_static(const ConfigTable& table, Scene& scene) {
   const ConfigValue value = table.at("static");
@@ -194,7 +194,7 @@ std::optional<StaticLoading> read_static(const ConfigTable& table, Scene& scene)
   loading.every = std::max<uint64_t>(1, (scene.steps + count - 1) / count);
   loading.evaluations = static_cast<uint64_t>(evaluations);
   scene.steps = loading.whole(scene.steps);
-  if (scene.pitch > 0) refuse_tearing(value, loading, scene);
+  placed_at(value, [&] { refuse_tearing(scene, loading); });
   return loading;
 }
 

@@ -28,9 +28,23 @@ __all__ = [
 
 
 def set_program_directory(directory: "str | _os.PathLike[str]") -> None:
-    """Where the programs of engines are, such as cuboct-systemc. At first: where the `cuboct` of PATH is."""
+    """Where the programs of engines are, such as cuboct-systemc.
+
+    At first: beside this package, in the build directory that it is of, or where the `cuboct` of PATH is, whichever has a `cuboct` first.
+    """
     _cuboct.set_program_directory(_os.fspath(directory))
 
 
-if _found := _shutil.which("cuboct"):
-    set_program_directory(_os.path.dirname(_os.path.realpath(_found)))
+def _find_programs() -> None:
+    package = _os.path.dirname(_os.path.realpath(__file__))
+    build = _os.path.dirname(_os.path.dirname(package))  # build/python/cuboct
+    own = [package] + ([build] if _os.path.exists(_os.path.join(build, "CMakeCache.txt")) else [])
+    _cuboct.look_for_parts_in(own)
+    for directory in own:
+        if _os.access(_os.path.join(directory, "cuboct"), _os.X_OK):
+            return set_program_directory(directory)
+    if found := _shutil.which("cuboct"):
+        set_program_directory(_os.path.dirname(_os.path.realpath(found)))
+
+
+_find_programs()

@@ -13,7 +13,8 @@ class InputError(ValueError):
 
     `message` and `hint` are texts; an empty hint: there is none. `file`, `line`, `column` (counted from 1) say where,
     and are None where no place is known. Of a scene or arch made of a dict, `file` is "scene" or "arch", the place counts in the
-    text that its `toml()` gives, and `key` is the way there in the dict, such as "law.youngs_modulus".
+    text that its `toml()` gives, and `key` is the way there in the dict, such as "law.youngs_modulus". Of a value that a
+    `Simulation` was given on its way, `key` says which one it was to replace, and there is no place.
     """
 
     message: str
@@ -34,7 +35,7 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         text = self.message
-        if self.key is not None:
+        if self.key is not None and self.file is not None:
             text = f"{self.file}, {self.key}: {text}"
         elif self.file is not None:
             text = f"{self.file}:{self.line}:{self.column}: {text}"

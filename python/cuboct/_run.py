@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from . import _cuboct
 from ._errors import InputError, RunError
 from ._scene import ArchLike, SceneLike, sources
-from ._simulation import _count, _given
+from ._simulation import Start, _count, _given, _left_by
 
 
 @dataclass(frozen=True)
@@ -47,8 +48,10 @@ class Run:
     cycles: NDArray[np.uint64] | None  # [step, node, phase, (first, last)], of engines that count them
     counters: dict[str, float]
     warnings: list[str]  # what the watch found wrong (docs/reference/failures.md)
-    stopped: str | None  # why it ended before its last step
+    stopped: str | None  # why it could not go on to its last step
+    reached: str | None  # where the scene's `until` ended it
     summary: dict[str, Any]  # of `cuboct run --json`
+    stages: dict[str, Run] = field(default_factory=dict)  # of a scene of stages the runs of all, by name; this is the last
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -82,10 +85,22 @@ class Comparison:
         return self.text
 
 
+def _stages(source: Any, stage: str | None, steps: int | None) -> list[tuple[str, str]]:
+    """Those to take: name of the part, and of its stage. One without names where the scene has none. All can be read."""
+    names = [one for one in source.stages() if stage in (None, *one)]
+    if len(names) > 1 and steps is not None:
+        raise InputError("steps goes with stage: each stage has its own steps")
+    for name, _ in names:
+        source.at(name, "").read()
+    return names or [(stage or "", "")]
+
+
 def run(
     scene: SceneLike,
-    engine: str = "lattice",
+    engine: str | None = None,
     *,
+    stage: str | None = None,
+    start: Start = None,
     arch: ArchLike = None,
     steps: int | None = None,
     frame_every: int | None = None,
@@ -103,8 +118,11 @@ def run(
 ) -> Run:
     """Runs a scene from its start, as `cuboct run` does, in any engine: lattice, golden, reference, systemc, rtl, gpu or fpga.
 
-    `steps`: None for the scene's. `frame_every`: keeps every so many states, 0 the first and the last; None: the last alone. The other arguments
-    are the command's options of that name. RunError where a step cannot be done, with what there is in its `run`.
+    `engine`: None for the one that the scene asks for, as the command takes it: reference for a `[rule]` and for static loading, else lattice.
+    A scene of stages runs one after the other, and all are in `stages` of what is returned; `stage` takes one. `start`: a `Simulation`, or the
+    directory of `cuboct run --out`, whose last state it begins with. `steps`: None for the scene's. `frame_every`: keeps every so many states,
+    0 the first and the last; None: the last alone. The other arguments are the command's options of that name. RunError where a step cannot
+    be done, with what there is in its `run`.
     """
     options = _given(
         threads=threads, ranks=ranks, precision=precision, integrator=integrator, hash_every=hash_every,
@@ -113,15 +131,25 @@ def run(
     options["cycles"] = bool(cycles)
     last = None if steps is None else _count(steps, "steps")
     every = None if frame_every is None else _count(frame_every, "frame_every")
-    with sources(scene, arch) as source:
-        found = _cuboct.run(source, engine, options, last, every, bool(anyway))
-    found["frames"] = [Frame(**frame) for frame in found["frames"]]
-    found["summary"] = json.loads(found["summary"])
-    result = Run(**found)
-    if result.stopped is not None:
-        error = RunError(result.stopped, result.summary.get("advice", {}).get("value", ""), result.steps)
-        error.run = result
-        raise error
+    runs: dict[str, Run] = {}
+    with sources(scene, arch) as source, tempfile.TemporaryDirectory() as folder:
+        begin = _left_by(start, folder)
+        names = _stages(source, stage, last)
+        ended = None  # a stage whose `until` held in an earlier part
+        for k, (name, whole) in enumerate(names):
+            if ended is not None and whole == ended:
+                continue
+            leave = os.path.join(folder, str(k)) if k + 1 < len(names) else ""
+            found = _cuboct.run(source.at(name, begin), engine or "", options, last, every, bool(anyway), leave)
+            found["frames"] = [Frame(**frame) for frame in found["frames"]]
+            found["summary"] = json.loads(found["summary"])
+            result = runs[name] = Run(**found, stages=runs if name else {})
+            if result.stopped is not None:
+                error = RunError(result.stopped, result.summary.get("advice", {}).get("value", ""), result.steps)
+                error.run = result
+                raise error
+            begin = leave
+            ended = whole if result.reached is not None else None
     return result
 
 
@@ -129,19 +157,43 @@ def crosscheck(
     scene: SceneLike,
     engines: Sequence[str] = ("golden", "lattice"),
     *,
+    stage: str | None = None,
+    start: Start = None,
     arch: ArchLike = None,
     steps: int | None = None,
     threads: int | None = None,
 ) -> Comparison:
     """Runs a scene in several engines of the fixed rule and compares every bit, and every cycle where two engines count them.
 
+    A scene of stages is compared stage by stage, each from the state in which all engines ended the one before. `stage`, `start`: as of `run`.
+
     >>> assert crosscheck("scenes/lj_block.toml", ["golden", "lattice"], steps=5)
     """
     last = None if steps is None else _count(steps, "steps")
     if isinstance(engines, str):
         raise InputError(f"engines is a list of names, not {engines!r}", 'engines=["golden", "lattice"]')
-    with sources(scene, arch) as source:
-        return Comparison(**_cuboct.crosscheck(source, list(engines), _given(threads=threads), last))
+    total = Comparison(True, "", None, None, 0, 0)
+    with sources(scene, arch) as source, tempfile.TemporaryDirectory() as folder:
+        begin = _left_by(start, folder)
+        names = _stages(source, stage, last)
+        ended = None
+        for k, (name, whole) in enumerate(names):
+            if ended is not None and whole == ended:
+                continue
+            leave = os.path.join(folder, str(k)) if k + 1 < len(names) else ""
+            found = _cuboct.crosscheck(source.at(name, begin), list(engines), _given(threads=threads), last, leave)
+            reached, stopped = found.pop("reached"), found.pop("stopped")
+            one = Comparison(**found)
+            text = f"stage {name}\n{one.text}" if len(names) > 1 else one.text
+            total = Comparison(
+                one.matched, f"{total.text}\n{text}" if total.text else text, one.step, one.engines,
+                total.updates + one.updates, total.steps + one.steps,
+            )  # fmt: skip
+            if stopped or not one:
+                break
+            begin = leave
+            ended = whole if reached else None
+    return total
 
 
 def explore(

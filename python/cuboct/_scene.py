@@ -22,12 +22,16 @@ class _Tables(dict[str, Any]):
     def __init__(self, tables: Mapping[str, Any] = {}, /, **more: Any):
         super().__init__(tables, **more)
         self._read: tuple[dict[str, Any], str, str] | None = None  # as it was read: tables, text, path
+        # From where paths within count: that of the file it came from; "": the working directory.
+        self._directory: str = getattr(tables, "_directory", "")
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
         """Reads a file. InputError, with its place, where it is no TOML."""
         name = os.fspath(path)
-        return cls._of(_cuboct.read_text(name), name)
+        tables = cls._of(_cuboct.read_text(name), name)
+        tables._directory = os.path.dirname(os.path.abspath(name))
+        return tables
 
     @classmethod
     def parse(cls, text: str) -> Self:
@@ -36,8 +40,13 @@ class _Tables(dict[str, Any]):
 
     @classmethod
     def _of(cls, text: str, path: str) -> Self:
+        text = text.removeprefix("\ufeff")
+        _check_text(text, path)
         _cuboct.check_toml(text, path)
-        tables = cls(tomllib.loads(text))
+        try:
+            tables = cls(tomllib.loads(text))
+        except (tomllib.TOMLDecodeError, RecursionError) as error:
+            raise InputError(f"{path}: {error}") from None
         tables._read = (copy.deepcopy(dict(tables)), text, path)
         return tables
 
@@ -58,8 +67,13 @@ class _Tables(dict[str, Any]):
         """Text, name in errors, and the keys by line where the text was made here."""
         if self._read and self._read[0] == self:
             return self._read[1], self._read[2], None
-        text, ways = dumps(self)
+        text, ways = dumps(self._with_whole_paths())
+        _check_text(text, self._what)
         return text, self._what, ways
+
+    def _with_whole_paths(self) -> Mapping[str, Any]:
+        """What is written here stands in no directory: paths that counted from that of a file are made whole."""
+        return self
 
 
 class Scene(_Tables):
@@ -73,25 +87,53 @@ class Scene(_Tables):
 
     _what = "scene"
 
+    def _with_whole_paths(self) -> Mapping[str, Any]:
+        if not self._directory:
+            return self
+
+        def whole(name: str, value: Any) -> Any:
+            if name == "file" and isinstance(value, str):
+                return os.path.join(self._directory, value)
+            if isinstance(value, Mapping):
+                return {key: whole(key, one) for key, one in value.items()}
+            if isinstance(value, (list, tuple)):
+                return [whole("", one) for one in value]
+            return value
+
+        tables = {key: whole(key, value) for key, value in self.items()}
+        start = tables.get("start")
+        if isinstance(start, dict) and isinstance(start.get("from"), str):
+            start["from"] = os.path.join(self._directory, start["from"])
+        return tables
+
     @classmethod
     def like(cls, template: str) -> Self:
         """A template of `cuboct new`: tension, impact, drop, beam, gas, metal, crack, sheet or release."""
         return cls._of(_cuboct.template_text(template), template)
 
-    def check(self, arch: "ArchLike" = None) -> dict[str, Any]:
-        """Reads the scene as a run would. InputError where it is wrong.
+    def check(self, arch: "ArchLike" = None, *, stage: str | None = None) -> dict[str, Any]:
+        """Reads the scene as a run would, of stages the first or `stage`. InputError where it is wrong.
 
         `title`; `particles`; `dt` and `dt_limit` (the largest stable one, None where unknown) in s; `steps`; `cells`; `cell_edge` in m;
-        `nodes` of the machine; `plan_hash`; `warnings`.
+        `nodes` of the machine (`cells` and `nodes` are None of a `[rule]`, for which no machine is built); `plan_hash`; `warnings`;
+        `engine`, which runs it where none is named; `stages`, their names.
         """
         with sources(self, arch) as source:
-            return _cuboct.check(source)
+            return _cuboct.check(source.at(stage or "", ""))
 
 
 class Arch(_Tables):
     """A machine, as a nested dict: its tables are those of an arch file (docs/user/arch.md)."""
 
     _what = "arch"
+
+
+def _check_text(text: str, name: str) -> None:
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        line = text.count("\n", 0, error.start) + 1
+        raise InputError(f"{name}: {text[error.start]!a} in line {line} is no character") from None
 
 
 SceneLike = Union[Scene, Mapping[str, Any], str, "os.PathLike[str]"]

@@ -2,15 +2,22 @@
 """A simulation that is stepped from Python."""
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _cuboct
 from ._errors import InputError
-from ._scene import ArchLike, SceneLike, sources
+from ._scene import ArchLike, Scene, SceneLike, _tables, sources
+
+Start = Union["Simulation", str, "os.PathLike[str]", None]
 
 
 def _given(**options: Any) -> dict[str, Any]:
@@ -31,8 +38,26 @@ def _vector(value: Sequence[float], what: str) -> tuple[float, float, float]:
         raise InputError(f"{what} has three components, as plain numbers, not {value!r}") from None
 
 
+def _left_by(start: Start, folder: str) -> str:
+    """The directory with the state to begin with; that of a simulation is made in `folder`. "": the scene's own start."""
+    if start is None:
+        return ""
+    if isinstance(start, Simulation):
+        begin = os.path.join(folder, "start")
+        start._of.leave(begin)
+        return begin
+    if isinstance(start, (str, os.PathLike)):
+        return os.fspath(start)
+    raise InputError(f"{start!r} left no state", "a Simulation, or the directory of `cuboct run --out`")
+
+
 class Simulation:
     """A scene in an engine: "lattice" (fast), "golden" (the same bits), "reference" (doubles), or one in a program of its own.
+
+    `engine`: None for the one that the scene asks for: reference for a `[rule]` and for static loading, else lattice. A scene of stages is
+    stepped stage by stage: `stage` names one, None is the first, and the next begins where `start`, the simulation of the one before, is now.
+    `start` may also be the directory of `cuboct run --out`. A scene with static loading is at rest after each load step; between two of
+    them a step moves nothing.
 
     "systemc", "rtl", "fpga", "gpu" with the fixed rule, and "lattice" with `ranks`, are programs. A call of `step` runs the program once, and once
     more after each reading of the probes; each run begins with the state reached so far, and the bits are those of one whole run.
@@ -49,8 +74,10 @@ class Simulation:
     def __init__(
         self,
         scene: SceneLike,
-        engine: str = "lattice",
+        engine: str | None = None,
         *,
+        stage: str | None = None,
+        start: Start = None,
         arch: ArchLike = None,
         threads: int | None = None,
         precision: str | None = None,
@@ -68,22 +95,29 @@ class Simulation:
             devices=None if devices is None else list(devices), port=port, baud=baud,
         )  # fmt: skip
         every = None if probe_every is None else _count(probe_every, "probe_every")
-        with sources(scene, arch) as source:
-            self._of = _cuboct.Simulation(source, engine, options, every, bool(anyway))
-        self._engine = engine
+        folder = ""
+        if isinstance(start, Simulation):  # what it left has to last, as a program reads it with the first step
+            folder = tempfile.mkdtemp()
+            weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+        begin = _left_by(start, folder)
+        tables = _tables(Scene, scene)
+        with sources(tables, arch) as source:
+            self._of = _cuboct.Simulation(source.at(stage or "", begin), engine or "", options, every, bool(anyway))
+        constraints = tables.get("constraint", [])
+        self._keys = {one.get("name"): f"constraint[{k}].velocity" for k, one in enumerate(constraints)}
 
     def step(self, steps: int = 1) -> None:
         """Goes so many steps further. RunError where one cannot be done; the state before it stands."""
         self._of.step(_count(steps, "steps"))
 
     def run(self) -> None:
-        """Goes to the scene's last step."""
-        self._of.step(max(self._of.scene_steps - self._of.step_count(), 0))
+        """Goes to the scene's last step, or to where its `until` holds."""
+        self._of.run()
 
     @property
     def engine(self) -> str:
         """Its name."""
-        return self._engine
+        return self._of.engine
 
     @property
     def steps(self) -> int:
@@ -151,6 +185,11 @@ class Simulation:
         return self._of.energies()[1]
 
     @property
+    def fields(self) -> dict[str, NDArray[np.float64]]:
+        """What the rule knows of each particle, (particles,). `damage`, of rules whose bonds break: the share that is broken, 0 to 1. A copy."""
+        return self._of.fields()
+
+    @property
     def curves(self) -> dict[str, NDArray[Any]]:
         """What probes and energies read so far: "step", "time" (s), then the curves by name, such as "tension.stress".
 
@@ -169,11 +208,21 @@ class Simulation:
         The state stays as it is, to the last bit; cells are reached from where particles are now. InputError where the formats of the
         machine's numbers, which were chosen for the scene, cannot hold it; nothing is changed then.
         """
-        self._of.set_velocity(constraint, _vector(velocity, "a velocity"))
+        with self._changing(self._keys.get(constraint)):
+            self._of.set_velocity(constraint, _vector(velocity, "a velocity"))
 
     def set_gravity(self, gravity: Sequence[float]) -> None:
         """Another gravity, three numbers in m/s^2. As `set_velocity`."""
-        self._of.set_gravity(_vector(gravity, "gravity"))
+        with self._changing("gravity"):
+            self._of.set_gravity(_vector(gravity, "gravity"))
+
+    @contextmanager
+    def _changing(self, key: str | None) -> Iterator[None]:
+        try:
+            yield
+        except InputError as error:
+            error.key = key
+            raise
 
     def picture(self, field: str = "strain", *, limit: float | None = None, width: int = 1200) -> bytes:
         """A PNG of the present state, by gnuplot: `field` is "strain", "speed", "thickness" or "broken" (bonds).

@@ -150,8 +150,7 @@ TEST(Static, StagesLoadAndThenMove) {
 TEST(Static, OtherEnginesAndCommandsRefuse) {
   const Bench bench(false);
   const std::string scene = bar(bench, "static = true\n");
-  const std::string hint =
-      "\n  hint: 'cuboct run' with the reference engine relaxes; 'static = false' lets the body move\n";
+  const std::string hint = "\n  hint: the reference engine relaxes; 'static = false' lets the body move\n";
   const auto expect_refusal = [&](const Strings& arguments, const std::string& text) {
     const Answer answer = bench.cuboct(arguments);
     EXPECT_EQ(answer.code, 2) << answer.out;

@@ -49,5 +49,11 @@ def interrupt_after(seconds):
     return thread
 
 
+def failure(*arguments):
+    """Exit code of `cuboct`, and what it prints on stderr."""
+    done = subprocess.run([os.path.join(PROGRAMS, "cuboct"), *arguments], capture_output=True, text=True)
+    return done.returncode, done.stderr
+
+
 def main():
     unittest.main(argv=sys.argv[:1], module="__main__")

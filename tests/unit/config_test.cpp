@@ -107,6 +107,21 @@ TEST(Config, ChecksRangesAndKinds) {
   EXPECT_EQ(error_of("[t]\n", tables), "a.toml:1:1: 't' must be an array of tables\n  hint: write [[t]]");
 }
 
+TEST(Config, TextsAreUtf8) {
+  const auto read = [](const ConfigTable& root) { root.string_or("a", ""); };
+  EXPECT_EQ(error_of("\xEF\xBB\xBF"
+                     "a = \"\xC3\xBC\"\n",
+                     read),
+            "accepted");
+  EXPECT_EQ(error_of("b = 1\na = \"\xC3\xBC\xFC\"\n", read),
+            "a.toml:2:7: the byte 0xfc is not UTF-8 text\n  hint: save the file as UTF-8: it may be in "
+            "Latin-1 now");
+  EXPECT_EQ(error_of(std::string("a\0", 2), read),
+            "a.toml:1:2: the byte 0x00 is not UTF-8 text\n  hint: save the file as UTF-8: it may be in "
+            "UTF-16 now");
+  EXPECT_EQ(error_of("a = 1 # \xED\xA0\x80", read).substr(0, 33), "a.toml:1:9: the byte 0xed is not ");
+}
+
 TEST(Config, PassesSyntaxErrorsOn) {
   const auto read = [](const ConfigTable&) {};
   EXPECT_EQ(error_of("a = 1\nb = = 2\n", read).substr(0, 12), "a.toml:2:5: ");

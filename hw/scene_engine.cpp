@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "hw/scene_engine.h"
+
+#include <fmt/format.h>
+
+#include "hw/engine_kind.h"
+#include "hw/engines.h"
+#include "hw/real_plan.h"
+#include "hw/rounds_kind.h"
+#include "hw/setup.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/reference_engine.h"
+#include "model/run/rounds_run.h"
+#include "model/run/static_engine.h"
+
+namespace cuboct {
+
+std::string engine_for(const Scene& scene) {
+  return scene.loading || rounds_of(scene.rule) != nullptr ? "reference" : "lattice";
+}
+
+void check_runs(const Scene& scene, const Arch& arch, const std::string& engine) {
+  if (engine_row(engine).here == Here::reference) return;
+  const std::string who = fmt::format("the {} engine", engine);
+  refuse_static(scene, who);
+  with_places(scene, arch, [&] { refuse_rounds(scene.rule, who); });
+}
+
+Plan scene_plan_of(const Scene& scene, const Arch& arch) {
+  return rounds_of(scene.rule) != nullptr ? real_plan_of(scene, arch) : plan_of(scene, arch);
+}
+
+uint64_t whole_steps(const Scene& scene, uint64_t steps) {
+  return scene.loading ? scene.loading->whole(steps) : steps;
+}
+
+EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  if (scene.loading) return static_kind(scene, plan, options);
+  if (rounds_of(scene.rule) != nullptr) return rounds_kind(scene, plan, options);
+  return reference_kind(scene, plan, options);
+}
+
+std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,
+                                        double cell_edge, uint64_t step, const std::vector<uint64_t>& own) {
+  if (scene.loading) {
+    check_static(options);
+    if (own.empty()) return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge);
+    return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge, step, own);
+  }
+  if (rounds_of(scene.rule) != nullptr)
+    return std::make_unique<RoundsRun>(scene, body, options, cell_edge, step);
+  RealOptions from = options;
+  from.first_step = step;
+  return std::make_unique<ReferenceEngine>(scene, body, from, cell_edge);
+}
+
+}  // namespace cuboct
