@@ -29,7 +29,7 @@ synth::Measured measure(const Plan& plan, const synth::Target& target) {
     const Plan pair = two_nodes(plan);
     const State one{0, {Particle{}}};  // for the project's bench; no RTL depends on it
     return synth::Meter(target, [](const std::string&) {})
-        .measure([&](const std::string& directory) { emit_rtl(pair, one, directory, 1); }, false);
+        .measure([&](const std::string& directory) { emit_rtl(pair, one, directory); }, false);
   } catch (const synth::ToolFailed& error) {
     throw Failed(error.what());
   } catch (const synth::Interrupted&) {

@@ -107,7 +107,7 @@ Items physics(const Loaded& loaded);
 }  // namespace
 
 Items resolve(const Loaded& loaded) {
-  if (rounds_of(loaded.scene.rule) != nullptr) return physics(loaded);
+  if (!has_machine(loaded.setup.plan)) return physics(loaded);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const FixedRule& rule = plan.rule;
@@ -213,9 +213,10 @@ Items physics(const Loaded& loaded) {
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
-  const bool real = rounds_of(scene.rule) != nullptr;
+  const bool real = !has_machine(plan);
   const std::vector<std::string> warnings = warnings_of(loaded, real);
   if (real) {
+    if (rounds_of(scene.rule) == nullptr) items.add("machine", std::string(kNoFormats));
     if (!warnings.empty()) add_warnings(items, warnings, {});
     return items;
   }
@@ -262,7 +263,7 @@ void add_check(CLI::App& app, int&) {
   options->answer.add_to(*command);
   command->callback([options] {
     const Items stages = stages_in(options->input);
-    const Loaded loaded = options->machine ? load(options->input) : load_any(options->input);
+    const Loaded loaded = options->machine ? load(options->input) : load_any(options->input, "");
     Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);
     options->answer.close(items);

@@ -9,6 +9,7 @@
 #include "cli/machine_cycles.h"
 #include "cli/stages.h"
 #include "hw/rtl_emit.h"
+#include "hw/rtl_prefix.h"
 #include "model/base/json.h"
 #include "model/base/text.h"
 #include "model/run/static_engine.h"
@@ -46,8 +47,7 @@ namespace {
 struct Options {
   Input input;
   std::string out, fit;
-  uint64_t vector_steps = 8;
-  BoardChoice board;
+  Emission emission{.vector_steps = 8};
   bool fixed_velocities = false, unchecked = false;
   Answer answer;
 };
@@ -59,11 +59,12 @@ Items emit_one(const Options& options) {
   std::optional<CountedCycles> counted;
   with_places(loaded.scene, plan.arch, [&] {
     check_emit_directory(options.out);
-    if (!options.board.name.empty() && !options.unchecked)
-      check_board(options.input, plan, loaded.setup.initial, options.board);
-    counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
-    emit_rtl(plan, loaded.setup.initial, options.out, options.vector_steps, options.board, text_of(plan.arch),
-             counted);
+    Emission emission = options.emission;
+    if (!emission.board.name.empty() && !options.unchecked)
+      check_board(options.input, plan, loaded.setup.initial, emission.board);
+    emission.arch = text_of(plan.arch);
+    emission.counted = counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
+    emit_rtl(plan, loaded.setup.initial, options.out, emission);
   });
   return say_emitted(options.out, plan, counted, options.answer);
 }
@@ -90,17 +91,19 @@ void emit_stages(const Options& options, const std::vector<StageName>& names, co
 }
 
 void emit(Options options) {
-  options.board.velocities = !options.fixed_velocities;
-  if (!options.board.bus.empty() && !options.board.name.empty())
+  BoardChoice& board = options.emission.board;
+  board.velocities = !options.fixed_velocities;
+  if (!options.emission.prefix.empty()) check_prefix(options.emission.prefix);
+  if (!board.bus.empty() && !board.name.empty())
     throw InputError("--bus and --board are two ways to one lattice", "give one of them");
-  if (options.fixed_velocities && options.board.bus.empty() && options.board.name.empty())
+  if (options.fixed_velocities && board.bus.empty() && board.name.empty())
     throw InputError("--fixed-velocities is of a host's link", "give --board or --bus with it");
-  if (!options.board.name.empty()) bit_clocks16(board_of(options.board.name), options.board.baud);
+  if (!board.name.empty()) bit_clocks16(board_of(board.name), board.baud);
   if (!options.fit.empty()) {
     if (!options.input.stage.empty() || !options.input.from.empty())
       throw InputError("--fit chooses a machine for a scene that begins with its packing",
                        "emit without --fit takes --stage and --from");
-    emit_fitted(options.input, options.fit, options.out, options.vector_steps, options.board, options.answer);
+    emit_fitted(options.input, options.fit, options.out, options.emission, options.answer);
     return;
   }
   const std::vector<StageName> names = stages_of(options.input.scene);
@@ -122,7 +125,8 @@ void add_emit(CLI::App& app, int&) {
       ->required()
       ->type_name("DIR");
   command
-      ->add_option("--vector-steps", options->vector_steps, "steps of golden that the project's bench checks")
+      ->add_option("--vector-steps", options->emission.vector_steps,
+                   "steps of golden that the project's bench checks")
       ->check(whole_number())
       ->type_name("N")
       ->capture_default_str();
@@ -133,10 +137,10 @@ void add_emit(CLI::App& app, int&) {
           "hx8k, ecp5-25, ecp5-85 or xc7")
       ->type_name("TARGET");
   auto* board = command
-                    ->add_option("--board", options->board.name,
+                    ->add_option("--board", options->emission.board.name,
                                  "add a top module, pins and a host link: icebreaker or ulx3s")
                     ->type_name("B");
-  command->add_option("--baud", options->board.baud, "bits per second of the board's serial line")
+  command->add_option("--baud", options->emission.board.baud, "bits per second of the board's serial line")
       ->needs(board)
       ->capture_default_str()
       ->type_name("N");
@@ -145,12 +149,17 @@ void add_emit(CLI::App& app, int&) {
                  "do not check whether the board has room: for the simulator, which runs any size")
       ->needs(board);
   command
-      ->add_option("--bus", options->board.bus,
+      ->add_option("--bus", options->emission.board.bus,
                    "add a wrapper with registers and an interrupt: axi4lite or wishbone")
       ->type_name("BUS");
   command->add_flag(
       "--fixed-velocities", options->fixed_velocities,
       "with --board or --bus: the host cannot set the velocities of held and moved types: less area");
+  command
+      ->add_option(
+          "--prefix", options->emission.prefix,
+          "begin every name of modules, packages and files with NAME_: two machines stand in one design")
+      ->type_name("NAME");
   options->answer.add_to(*command);
   command->callback([options] { emit(*options); });
 }

@@ -8,15 +8,14 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
-#include "hw/board.h"
-#include "hw/rtl_project.h"
+#include "hw/rtl_emit.h"
 
 namespace cuboct {
 
 // Chooses the arch for a device and writes the project. Throws Failed where a tool failed or somebody
 // interrupted.
-void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
-                 const BoardChoice& board, const Answer& answer);
+void emit_fitted(const Input& input, const std::string& target, const std::string& out, Emission emission,
+                 const Answer& answer);
 
 // Throws InputError with the numbers where the board's FPGA has no room for the plan, Failed where a tool
 // failed or somebody interrupted. Says on stderr what could not be checked.

@@ -39,13 +39,13 @@ void check_board(const Input& input, const Plan& plan, const State& initial, con
   }
 }
 
-void emit_fitted(const Input& input, const std::string& target, const std::string& out, uint64_t vector_steps,
-                 const BoardChoice& board, const Answer& answer) {
-  const synth::Target& device = synth::fit_target(target, board);
+void emit_fitted(const Input& input, const std::string& target, const std::string& out, Emission emission,
+                 const Answer& answer) {
+  const synth::Target& device = synth::fit_target(target, emission.board);
   check_emit_directory(out);
   catch_interrupts();
   try {
-    synth::Fitter fitter(input.scene, input.arch, device, board, say);
+    synth::Fitter fitter(input.scene, input.arch, device, emission.board, say);
     {
       const Said said;
       fitter.choose();
@@ -53,7 +53,9 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
     const std::optional<CountedCycles> counted = count_cycles(setup.plan, setup.initial, fitter.steps());
-    emit_rtl(setup.plan, setup.initial, out, vector_steps, board, fitter.arch_text(), counted);
+    emission.arch = fitter.arch_text();
+    emission.counted = counted;
+    emit_rtl(setup.plan, setup.initial, out, emission);
     answer.say("{}{:<16} {}/arch.toml\n", block_text(table), "arch", line_text(out));
     if (counted)
       answer.say("{:<16} {:.1f}, the mean of the first {} steps, counted; the most {}\n", "cycles per step",

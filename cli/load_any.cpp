@@ -9,9 +9,9 @@
 
 namespace cuboct {
 
-Loaded load_any(const Input& input) {
+Loaded load_any(const Input& input, const std::string& engine) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
-  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch));
+  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch), engine);
   return loaded;
 }
 
@@ -23,9 +23,13 @@ void add_rounds(Items& items, const Scene& scene) {
 }
 
 std::string plan_text(const Loaded& loaded) {
-  if (rounds_of(loaded.scene.rule) == nullptr) return describe(loaded.setup.plan);
   Items items;
-  add_rounds(items, loaded.scene);
+  if (rounds_of(loaded.scene.rule) != nullptr)
+    add_rounds(items, loaded.scene);
+  else if (!has_machine(loaded.setup.plan))
+    items.add("machine", std::string(kNoFormats));
+  else
+    return describe(loaded.setup.plan);
   return items.text();
 }
 

@@ -10,8 +10,15 @@
 
 namespace cuboct {
 
-// As load_plan, or with what stands for a plan (hw/real_plan.h).
-Loaded load_any(const Input& input);
+// As load_plan, or with what stands for a plan (hw/real_plan.h): of rules of several rounds, and of rules of
+// pairs that no integers hold, where `engine` always computes in doubles. None is named: the one that the
+// scene asks for.
+Loaded load_any(const Input& input, const std::string& engine = "lattice");
+
+// Whether it is a plan, and not what stands for one.
+inline bool has_machine(const Plan& plan) { return plan.lattice.size() > 0; }
+// Of a rule of pairs without one.
+inline constexpr const char* kNoFormats = "none: no integers hold the rule, doubles compute it";
 
 // The plan as text, or the rule's settings and rounds.
 std::string plan_text(const Loaded& loaded);

@@ -49,9 +49,9 @@ DeviceUse synthesised_use(const Setup& setup, const std::string& target) {
   const synth::Target& device = synth::target_of(target);
   try {
     const synth::Meter meter(device, [](const std::string&) {});
-    const synth::Measured m = meter.measure(
-        [&](const std::string& directory) { emit_rtl(setup.plan, setup.initial, directory, 1); }, false,
-        setup.plan.nodes() == 1 ? synth::Nodes::flat : synth::Nodes::apart);
+    const synth::Measured m =
+        meter.measure([&](const std::string& directory) { emit_rtl(setup.plan, setup.initial, directory); },
+                      false, setup.plan.nodes() == 1 ? synth::Nodes::flat : synth::Nodes::apart);
     const auto all = [&](synth::Resource r) {
       const double count =
           static_cast<double>(m.node[r]) * static_cast<double>(m.nodes) + static_cast<double>(m.around[r]);

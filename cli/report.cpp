@@ -349,7 +349,7 @@ void write_report(const std::string& directory, const std::string& out) {
   Input input{record.scene, record.arch};
   input.stage = record.stage;
   input.from = record.from;
-  const Loaded loaded = load_any(input);
+  const Loaded loaded = load_any(input, record.engine);
   const Trace trace = read_trace(directory + "/trace.h5");
   const Plan& plan = loaded.setup.plan;
   if (trace.plan_hash != plan.hash)

@@ -135,7 +135,7 @@ Options for_scene(Options options, const Scene& scene) {
 }
 
 Ended run_once(const Options& given) {
-  const Loaded loaded = load_any(given.input);
+  const Loaded loaded = load_any(given.input, given.engine);
   const Options options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "model/analysis/motion.h"
+#include "model/contract/format_cures.h"
 #include "model/contract/state.h"
 
 namespace cuboct {
@@ -24,16 +25,12 @@ constexpr int kPositionBeyondDifference = 4;
 constexpr int kKickUnits = 4;
 // The widest with which every product and sum of the rule is exact in doubles (emu/lattice/kernel_rule.cpp),
 // and a gain times a displacement in 64 bits.
-constexpr int kMostPosition = 30, kMostGuard = 30, kMostDifference = 24, kMostVelocity = 44,
-              kMostVelocityWithGains = 43, kMostRelativeBits = 25;
-constexpr int kMostVelocityFrac = 50;  // of positions with their guard bits: docs/user/arch.md
-constexpr int kRelativeRange = -3;     // 1/8 of a cell per step
-constexpr int kWidestRelative = 27;    // bits that an arch file may ask for
+constexpr int kMostPosition = 30, kMostDifference = 24, kMostVelocity = 44, kMostVelocityWithGains = 43,
+              kMostRelativeBits = 25;
+constexpr int kRelativeRange = -3;  // 1/8 of a cell per step
 // Units per 1/accuracy below which a run is warned of: half a unit of so many is five times the accuracy.
-// More than this off, and quantise() refuses an imposed velocity or gravity.
-constexpr double kWorst = 0.01;
 constexpr double kFewest = 0.1;
-constexpr int kGainBits = 18, kScale = 16, kFilter = 10, kGain = 16, kMostGain = 24;
+constexpr int kScale = 16, kFilter = 10, kGain = 16;
 
 constexpr const char* kLeft = "as the run had that left the state";
 
@@ -96,7 +93,7 @@ class Chooser {
 
   void velocity() {
     Widths& w = result_.widths;
-    const double dt = scene_.rule.dt, twice = 2 * std::min(scene_.accuracy, kWorst);
+    const double dt = scene_.rule.dt, twice = 2 * std::min(scene_.accuracy, kMostOff);
     int wanted = w.position_frac + kLeastGuard;
     std::string why = "the least that is taken";
     const auto want = [&](int bits, std::string reason) {
@@ -166,9 +163,9 @@ class Chooser {
       for (const double gain : {type.kp * rule.dt * rule.dt / mass, type.kd * rule.dt / mass})
         if (type.pd && gain > 0) least = std::min(least, gain), largest = std::max(largest, gain);
     }
-    int wanted = kGain, most = kMostGain;
+    int wanted = kGain, most = kMostGainFrac;
     if (largest > 0) {
-      wanted = std::max(wanted, bits_for(2 * scene_.accuracy * least));
+      wanted = std::max(wanted, bits_for(2 * std::min(scene_.accuracy, kMostOff) * least));
       most = std::min(most, kGainBits - 2 + bits_for(largest * (1 + 1e-4)));
     }
     w.gain_frac =
@@ -237,6 +234,20 @@ std::vector<std::string> width_warnings(const Scene& scene, double edge, const A
                                      type.pull.isZero(0) ? "gravity of" : "force on", type.name, g,
                                      of_guard()));
     const double mass = scene.rule.mass_of(static_cast<int>(k));
+    const auto gain = [&](const char* name, double real, int64_t kept) {
+      const double off =
+          real > 0 ? std::abs(std::ldexp(static_cast<double>(kept), -rule.widths.gain_frac) / real - 1) : 0;
+      if (off <= scene.accuracy) return;
+      const WidthReason& r = reason("gain_frac");
+      warnings.push_back(fmt::format("the gain {} of '{}' is off by {:.2g} of it: {}", name, type.name, off,
+                                     r.asked && r.wanted <= gain_frac_of(scene.rule)
+                                         ? fmt::format("gain_frac = {} would do, or \"auto\"", r.wanted)
+                                         : gains_that_are_kept(scene.rule, k, scene.accuracy)));
+    };
+    if (type.pd) {
+      gain("kp", type.kp * rule.dt * rule.dt / mass, rule.types[k].kp);
+      gain("kd", type.kd * rule.dt / mass, rule.types[k].kd);
+    }
     if (const double off = std::abs(mass_of(rule, static_cast<int>(k)) / mass - 1); off > scene.accuracy)
       warnings.push_back(
           fmt::format("the mass of '{}' is off by {:.2g} of it: weights have {} fractional bits, "

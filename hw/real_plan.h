@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What stands for a plan where a scene's rule has several rounds: no machine is built for it, but a run has
-// particles, a cell in which speeds are told, and a hash.
+// What stands for a plan where no machine is built, as the scene's rule has several rounds or no integers
+// hold it: a run in doubles has particles, a cell in which speeds are told, and a hash.
 #pragma once
 
 #include "hw/plan.h"
@@ -8,8 +8,10 @@
 
 namespace cuboct {
 
-// Of a scene whose rule has rounds (model/rules). It has no lattice and no formats; the hash is of the rule's
-// settings, the step and the body.
+// It has no lattice and no formats; the hash is of the rule, the step and the body.
 Plan real_plan_of(const Scene& scene, const Arch& arch);
+
+// Whether the formats of this arch hold the scene's rule of pairs.
+bool formats_hold(const Scene& scene, const Arch& arch);
 
 }  // namespace cuboct

@@ -18,6 +18,7 @@
 #include "hw/rtl_bus.h"
 #include "hw/rtl_design.h"
 #include "hw/rtl_library.h"
+#include "hw/rtl_prefix.h"
 #include "hw/rtl_project.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
@@ -27,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Files = std::map<std::string, std::string>;  // path in the project: text
+using Files = RtlFiles;
 
 // Every emission begins with this, so that a second one may overwrite it.
 constexpr const char* kMarker = ".cuboct-emit";
@@ -135,9 +136,9 @@ void emit_node(const Plan& plan, const std::string& dir) {
   write(dir, files);
 }
 
-void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
-              const BoardChoice& board, const std::string& arch,
-              const std::optional<CountedCycles>& counted) {
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission) {
+  const BoardChoice& board = emission.board;
+  if (!emission.prefix.empty()) check_prefix(emission.prefix);
   if (plan.arch.boards.several())
     plan.arch.places.fail({"boards"},
                           "a project is for one device, and [boards] cuts the machine into several",
@@ -155,9 +156,10 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);
   add_list(files);
   add_pages(files, design, !board.name.empty() || !board.bus.empty());
-  if (!arch.empty()) files["arch.toml"] = arch;
-  files["project.json"] = print_project(plan, initial, modules_of(files), counted);
-  for (auto& [path, text] : print_bench(plan, design, initial, vector_steps)) files[path] = std::move(text);
+  if (!emission.arch.empty()) files["arch.toml"] = emission.arch;
+  files["project.json"] = print_project(plan, initial, modules_of(files), emission.counted);
+  for (auto& [path, text] : print_bench(plan, design, initial, emission.vector_steps))
+    files[path] = std::move(text);
   if (!board.name.empty()) {
     for (auto& [path, text] : print_board(plan, design, board)) files[path] = std::move(text);
     files["board/files.f"] = list_with(files["files.f"], "board", files);
@@ -168,7 +170,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, ui
     files["bus/files.f"] = list_with(files["files.f"], "bus", files);
     files["README.md"] += print_bus_readme(plan, board);
   }
-  write(dir, files);
+  write(dir, with_prefix(files, emission.prefix));
 }
 
 }  // namespace cuboct

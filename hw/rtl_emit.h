@@ -13,15 +13,20 @@
 
 namespace cuboct {
 
+struct Emission {
+  uint64_t vector_steps = 1;  // of golden, for the bench
+  BoardChoice board = {};
+  std::string prefix = {};  // of all names: hw/rtl_prefix.h; empty: none
+  std::string arch = {};    // text of arch.toml, which the README names; nothing where it is empty
+  std::optional<CountedCycles> counted = {};  // for project.json
+};
+
 // Writes into `dir` (created; must be empty or hold an earlier emission): rtl/ (library modules and what is
-// generated: cuboct_pkg.sv, tables, cuboct_node.sv, cuboct_lattice.sv), bench/ with vectors of `vector_steps`
-// steps from golden, files.f, project.json, README.md. With a board also board/: its top module
-// cuboct_board_top, what that needs beside the lattice, pins, and files.f of all. With a bus likewise bus/,
-// with the top module cuboct_axi4lite or cuboct_wishbone. Same plan, same bytes. Throws InputError. `arch` is
-// the text of arch.toml, which the README names; nothing where it is empty; `counted` goes into project.json.
-void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, uint64_t vector_steps,
-              const BoardChoice& board = {}, const std::string& arch = "",
-              const std::optional<CountedCycles>& counted = {});
+// generated: cuboct_pkg.sv, tables, cuboct_node.sv, cuboct_lattice.sv), bench/ with vectors from golden,
+// files.f, project.json, README.md. With a board also board/: its top module cuboct_board_top, what that
+// needs beside the lattice, pins, and files.f of all. With a bus likewise bus/, with the top module
+// cuboct_axi4lite or cuboct_wishbone. Same plan, same bytes. Throws InputError.
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission = {});
 // Throws InputError where emit_rtl would refuse the directory as another's.
 void check_emit_directory(const std::string& dir);
 

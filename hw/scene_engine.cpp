@@ -8,6 +8,7 @@
 #include "hw/real_plan.h"
 #include "hw/rounds_kind.h"
 #include "hw/setup.h"
+#include "model/base/error.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/reference_engine.h"
 #include "model/run/rounds_run.h"
@@ -26,8 +27,16 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
   with_places(scene, arch, [&] { refuse_rounds(scene.rule, who); });
 }
 
-Plan scene_plan_of(const Scene& scene, const Arch& arch) {
-  return rounds_of(scene.rule) != nullptr ? real_plan_of(scene, arch) : plan_of(scene, arch);
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine) {
+  if (rounds_of(scene.rule) != nullptr) return real_plan_of(scene, arch);
+  const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
+  const bool doubles = row != nullptr && row->here == Here::reference;
+  try {
+    return plan_of(scene, arch);
+  } catch (const InputError&) {
+    if (!doubles || formats_hold(scene, arch)) throw;
+    return real_plan_of(scene, arch);
+  }
 }
 
 uint64_t whole_steps(const Scene& scene, uint64_t steps) {

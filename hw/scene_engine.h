@@ -20,8 +20,9 @@ std::string engine_for(const Scene& scene);
 // InputError, at the key that asks for more, where the engine cannot run the scene.
 void check_runs(const Scene& scene, const Arch& arch, const std::string& engine);
 
-// plan_of, or for a rule of rounds what stands for a plan (hw/real_plan.h).
-Plan scene_plan_of(const Scene& scene, const Arch& arch);
+// plan_of, or what stands for a plan (hw/real_plan.h): of rules of several rounds, and of rules of pairs that
+// no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene).
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "lattice");
 
 // Of steps or an interval, as the scene can do them: static loading knows whole load steps.
 uint64_t whole_steps(const Scene& scene, uint64_t steps);

@@ -68,6 +68,7 @@ bool is_flat(const Scene& scene, const FixedRule& rule, double lowest) {
 
 // What cells may come to hold, at the least: 4 of an FCC packing's cubic cell, four times over.
 constexpr int kLeastCapacity = 16;
+constexpr int kMostCapacity = 256;  // of an arch
 // Particles that stand closer to a face than this share of the distance at rest may come in.
 constexpr double kMayComeIn = 0.2;
 
@@ -91,7 +92,7 @@ int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const 
   }
   const uint32_t fullest = count.empty() ? 0 : *std::max_element(count.begin(), count.end());
   const uint32_t roomy = 4 * ((5 * fullest + 15) / 16), power = std::bit_floor(roomy);
-  return std::clamp(static_cast<int>(power >= fullest ? power : roomy), kLeastCapacity, 256);
+  return std::clamp(static_cast<int>(power >= fullest ? power : roomy), kLeastCapacity, kMostCapacity);
 }
 
 // The rule in integers. Where formats that the arch file sets cannot hold it, the hint names those that can.
@@ -180,7 +181,13 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
     arch.places.fail(
         {"node.capacity"},
         fmt::format("a cell would hold {} particles: its capacity is {}", fullest, arch.capacity),
-        fmt::format("set node.capacity to at least {} in the arch file", fullest));
+        fullest <= kMostCapacity ? fmt::format("set node.capacity to at least {} in the arch file", fullest)
+        : edge > scene.rule.cutoff() * (1 + 1e-9)
+            ? fmt::format("a cell holds at most {}: a shorter node.cell_edge", kMostCapacity)
+            : fmt::format(
+                  "a cell, as long as the pair law's cutoff, holds at most {}: a shorter cutoff, or doubles "
+                  "(--engine reference)",
+                  kMostCapacity));
   std::vector<std::string> warnings = width_warnings(scene, edge, chosen, rule);
   for (const MeshFacts& mesh : scene.meshes)
     if (std::string warning = mesh_warning(mesh); !warning.empty()) warnings.push_back(std::move(warning));

@@ -19,6 +19,9 @@ namespace {
 // Memories are counted in blocks of which yosys may make registers, where they are small: only so many times
 // too many are too many without a synthesis.
 constexpr uint64_t kSurely = 20;
+// Registers that stand for memories without a block are counted as they are; links that lead nowhere may need
+// none.
+constexpr uint64_t kSurelyRegisters = 2;
 // Most links of so few nodes lead nowhere, and what they lead to is not built: only the whole tells.
 constexpr uint32_t kFewNodes = 8;
 
@@ -97,16 +100,18 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
     for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
       counts += memory_counts(target.family, m);
     const Use use{amounts_of(counts), {}};
-    if (!has_room(use.all(plan.nodes()), times(room, kSurely)))
-      throw no_room(scene, plan, board, use, room, true);
+    FitAmounts surely = times(room, kSurely);
+    for (size_t r = 0; r < kFitted.size(); ++r)
+      if (kFitted[r] == Resource::ff) surely[r] = times(room, kSurelyRegisters)[r];
+    if (!has_room(use.all(plan.nodes()), surely)) throw no_room(scene, plan, board, use, room, true);
   }
   const bool tools = in_path("yosys") && (target.family != Family::ice40 || in_path("nextpnr-ice40"));
   if (!tools) return FitCheck::memories;
   says("synthesises the board's design");
   const Meter meter(target, [](const std::string&) {});
   const auto measure = [&](Nodes nodes) {
-    return meter.measure([&](const std::string& dir) { emit_rtl(plan, initial, dir, 1, choice); }, true,
-                         nodes);
+    return meter.measure([&](const std::string& dir) { emit_rtl(plan, initial, dir, {.board = choice}); },
+                         true, nodes);
   };
   if (plan.nodes() > kFewNodes) {
     const Measured m = measure(Nodes::apart);

@@ -51,13 +51,14 @@ void check_name(const std::string& name, const std::string& base) {
                    "cuboct synth takes modules of letters, digits and '_'");
 }
 
-Design read_design(const std::string& file) {
+Design read_design(const std::string& file, const std::string& prefix) {
   const nlohmann::json json = read_json(file);
   Design design;
   for (const auto& [name, module] : json.at("modules").items()) {
     Module& m = design.modules[name];
     m.base = base_name(name);
     check_name(name, m.base);
+    if (m.base.starts_with(prefix)) m.base.erase(0, prefix.size());
     if (module.at("attributes").contains("top")) design.top = name;
     for (const auto& [port, what] : module.at("ports").items())
       m.ports.push_back({port, what.at("direction") == "input", what.at("bits").size()});

@@ -16,7 +16,7 @@ struct Port {
 };
 
 struct Module {
-  std::string base;         // its name in the source; the key of Design::modules says its parameters too
+  std::string base;         // its name in the library; the key of Design::modules says its parameters too
   std::vector<Port> ports;  // in the order of the source
   std::map<std::string, std::string> instances;  // name: key of the module
 };
@@ -26,9 +26,9 @@ struct Design {
   std::map<std::string, Module> modules;  // by yosys's name, e.g. "$paramod$<hash>\cuboct_fifo"
 };
 
-// Reads what yosys's write_json wrote after `hierarchy` and `proc`. Throws std::runtime_error where it is
-// something else.
-Design read_design(const std::string& file);
+// Reads what yosys's write_json wrote after `hierarchy` and `proc`; blocks go by their names without
+// `prefix`. Throws std::runtime_error where it is something else.
+Design read_design(const std::string& file, const std::string& prefix = "");
 
 // The module that `unit` ("pipe", "cuboct_pipe", "fifo#2") names: its key in the design. Blocks of one source
 // that are instantiated with different parameters are numbered from 1 in the order in which a walk from the

@@ -187,7 +187,7 @@ void Fitter::measure(const FitPoint& point) {
   const Measured m = meter_.measure(
       [&](const std::string& directory) {
         try {
-          emit_rtl(plan, base_.initial, directory, 1, board_);
+          emit_rtl(plan, base_.initial, directory, {.board = board_});
         } catch (const InputError& error) {
           throw NotEmitted(error);
         }

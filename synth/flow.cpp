@@ -116,15 +116,15 @@ class Flow {
       s.harness = false;
     } else {
       s.files = below(project_.files);
-      s.top = lattice ? "cuboct_lattice" : "cuboct_node";
+      s.top = project_.prefix + (lattice ? "cuboct_lattice" : "cuboct_node");
     }
     tools_.write("elaborate.ys", elaborate_script(s.files, s.top, out_));
     tools_.run("yosys reads the project", "elaborate", "yosys", {out_ + "/elaborate.ys"});
-    const Design design = read_design(tools_.path("elaborated.json"));
+    const Design design = read_design(tools_.path("elaborated.json"), project_.prefix);
     fs::remove(tools_.path("elaborated.json"));
     s.module = board || lattice ? design.top : module_of(design, request_.unit);
     s.unit = base_name(s.module);
-    if (lattice) s.kept = "cuboct_node";
+    if (lattice) s.kept = project_.prefix + "cuboct_node";
     if (asic) {
       s.harness = false;
       const auto& ports = design.modules.at(s.module).ports;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "hw/rtl_prefix.h"
 #include "model/base/error.h"
 
 namespace cuboct::synth {
@@ -69,6 +70,7 @@ Project read_project(const std::string& directory) {
   for (const std::string& f : project.files)
     if (!fs::is_regular_file(dir / f))
       throw InputError(fmt::format("{}: names {}, which is not there", file, f), "emit the project again");
+  project.prefix = prefix_of(project.files);
   return project;
 }
 
@@ -78,7 +80,7 @@ Board read_board(const Project& project) {
     throw InputError(fmt::format("{}: has no board/", project.directory),
                      "cuboct emit SCENE --out DIR --board BOARD writes one");
   Board board;
-  board.top = "cuboct_board_top";
+  board.top = project.prefix + "cuboct_board_top";
   board.files = lines_of(dir / "files.f");
   for (const std::string& f : board.files)
     if (!fs::is_regular_file(fs::path(project.directory) / f))

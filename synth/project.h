@@ -25,6 +25,7 @@ struct Project {
   int capacity = 0;
   ProjectCycles cycles;
   std::vector<std::string> files;  // below the directory, in the order to read
+  std::string prefix;              // of its modules, "left_" (hw/rtl_prefix.h)
 };
 
 // Throws InputError: no such directory, no project, an entry that is missing or of another kind, a file that

@@ -18,6 +18,7 @@
 #include "emu/verilated/library.h"
 #include "emu/verilated/serial_line.h"
 #include "hw/program/command_line.h"
+#include "hw/rtl_prefix.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/standard_streams.h"
@@ -33,7 +34,8 @@ struct Request {
 
 // The value of a constant of the project's cuboct_board_pkg.
 double constant_of(const std::string& project, const std::string& name) {
-  const std::string path = project + "/board/cuboct_board_pkg.sv";
+  const std::string path =
+      fmt::format("{}/board/{}cuboct_board_pkg.sv", project, prefix_of(board_files(project)));
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
     const size_t equals = line.find('=');

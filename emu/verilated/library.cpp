@@ -6,9 +6,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "emu/verilated/sources.h"
 #include "hw/rtl_emit.h"
+#include "hw/rtl_prefix.h"
+#include "model/base/output.h"
 #include "model/base/resources.h"
 
 namespace cuboct::emu {
@@ -29,19 +32,25 @@ void find_symbol(void* handle, const char* name, F& function) {
   function = reinterpret_cast<F>(dlsym(handle, name));
 }
 
-// The project's files, all below rtl/, which is what the library's name stands for.
+// The project's files, all below rtl/, which is what the library's name stands for, and without their prefix:
+// what is the same but for that is compiled once.
 void copy_board(const fs::path& project, const std::vector<std::string>& files, const fs::path& dir) {
   fs::create_directories(dir / "rtl");
   std::ofstream list(dir / "files.f");
+  const std::string prefix = prefix_of(files);
   for (const std::string& path : files) {
-    const std::string name = fs::path(path).filename().string();
-    std::error_code error;
-    fs::copy_file(project / path, dir / "rtl" / name, error);
-    if (error)
-      throw InputError(fmt::format("{}: cannot be read: {}", (project / path).string(), error.message()));
+    const std::string name = without_prefix(fs::path(path).filename().string(), prefix),
+                      from = (project / path).string();
+    std::ifstream source(from, std::ios::binary);
+    std::ostringstream text;
+    text << source.rdbuf();
+    if (!source || !fs::is_regular_file(from)) throw InputError(fmt::format("{}: cannot be read", from));
+    write_text((dir / "rtl" / name).string(), without_prefix(text.str(), prefix));
     list << "rtl/" << name << "\n";
   }
 }
+
+bool is_bus(const fs::path& project) { return fs::exists(project / "bus" / "files.f"); }
 
 }  // namespace
 
@@ -80,14 +89,12 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
                                 {"ID_BITS", plan.words.id_bits},
                                 {"CELL_BITS", plan.bricks.cell_bits()}},
                   .sources = with_headers("shim_lattice.cpp"),
-                  .emit = [&](const std::string& dir) { emit_rtl(plan, initial, dir, 1); }},
+                  .emit = [&](const std::string& dir) { emit_rtl(plan, initial, dir); }},
                  build_directory);
 }
 
-std::string compile_board(const std::string& project, const std::string& build_directory) {
-  const fs::path from = project;
-  const bool bus = fs::exists(from / "bus" / "files.f");
-  const fs::path names = from / (bus ? "bus" : "board") / "files.f";
+std::vector<std::string> board_files(const std::string& project) {
+  const fs::path names = fs::path(project) / (is_bus(project) ? "bus" : "board") / "files.f";
   std::ifstream list(names);
   if (!list)
     throw InputError(fmt::format("{} holds no board: there is no {}", project, names.string()),
@@ -95,8 +102,14 @@ std::string compile_board(const std::string& project, const std::string& build_d
   std::vector<std::string> files;
   for (std::string path; std::getline(list, path);)
     if (!path.empty()) files.push_back(path);
-  if (bus) {
-    const bool axi = fs::exists(from / "bus" / "cuboct_axi4lite.sv");
+  return files;
+}
+
+std::string compile_board(const std::string& project, const std::string& build_directory) {
+  const fs::path from = project;
+  const std::vector<std::string> files = board_files(project);
+  if (is_bus(project)) {
+    const bool axi = fs::exists(from / "bus" / (prefix_of(files) + "cuboct_axi4lite.sv"));
     return compile({.top = axi ? "cuboct_axi4lite" : "cuboct_wishbone",
                     .verilator_flags = "--cc",
                     .compiler_flags = "-O1 -fno-semantic-interposition",

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "emu/verilated/abi.h"
 #include "emu/verilated/compile.h"
@@ -23,6 +24,10 @@ std::string compile_lattice(const Plan& plan, const State& initial, const std::s
 
 // What compile_node builds, for those who change it: other sources of the RTL, other flags. Refers to `plan`.
 Build node_build(const Plan& plan);
+
+// The modules of the top of the board, or of the wrapper of the bus, that `project` holds, in the order to
+// read; paths are from there. Throws InputError where it holds neither.
+std::vector<std::string> board_files(const std::string& project);
 
 // The path of the compiled top of the board, or of the wrapper of the bus, that `project`, a directory of
 // `cuboct emit --board` or `--bus`, holds.

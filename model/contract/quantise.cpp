@@ -9,15 +9,15 @@
 #include <functional>
 
 #include "model/base/fixed_math.h"
+#include "model/contract/format_cures.h"
 #include "model/contract/law.h"
 
 namespace cuboct {
 namespace {
 
-constexpr int kLeastStrength = 18, kWidestStrength = 27;
+constexpr int kLeastStrength = 18;
 constexpr int kLeastIndex = 9, kMostIndex = 13;
-constexpr double kBondsFrom = 0.8;     // of the distance at rest: nearer, particles collide
-constexpr int kMostVelocityFrac = 50;  // of a double's 53 bits (emu/lattice/kernel_rule.h)
+constexpr double kBondsFrom = 0.8;  // of the distance at rest: nearer, particles collide
 constexpr double kHalfUnit =
     1.7e-4;  // of the strongest pull: where the elastic constants of Lennard-Jones are right to 1 %
 
@@ -60,26 +60,34 @@ std::vector<std::string> law_keys(const Rule& rule) {
   return keys;
 }
 
-// `whole`: the length of the vector that the value is a component of; a component is as exact as the vector
-// asks for.
-int64_t quantised(double value, double whole, int frac, int bits, const char* what,
-                  const std::vector<std::string>& keys) {
-  const double scaled = std::ldexp(value, frac);
+// A number of the rule that becomes an integer.
+struct Quantity {
+  const char* what;
+  double value;  // in units of the lattice
+  double whole;  // length of the vector that it is a component of; a component is as exact as the vector asks
+                 // for
+  int power;     // it grows as dt^power
+  std::vector<std::string> keys;
+};
+
+// `keeps`: what keeps it where the fractional bits do not.
+int64_t quantised(const Quantity& q, double dt, int frac, int bits,
+                  const std::function<std::string()>& keeps) {
+  const double scaled = std::ldexp(q.value, frac);
   if (!(std::abs(scaled) < std::ldexp(1.0, bits - 1) - 0.5))
     throw InputError(
         fmt::format(
             "{} is {:.6g} in units of the lattice: {} bits with {} fractional bits hold less than {:.6g}",
-            what, value, bits, frac, std::ldexp(1.0, bits - 1 - frac)),
-        "a smaller dt helps, or a wider format in the arch file")
-        .about(keys);
+            q.what, q.value, bits, frac, std::ldexp(1.0, bits - 1 - frac)),
+        dt_that_holds(dt, q.value, std::ldexp(1.0, bits - 1 - frac), q.power))
+        .about(q.keys);
   const auto result = std::llround(scaled);
-  // One per cent: coarser, and the run would be of another scene.
-  if (std::abs(static_cast<double>(result) - scaled) > 0.01 * std::abs(std::ldexp(whole, frac)))
+  if (std::abs(static_cast<double>(result) - scaled) > kMostOff * std::abs(std::ldexp(q.whole, frac)))
     throw InputError(
-        fmt::format("{} is {:.6g} in units of the lattice: {} fractional bits round it to {:.6g}", what,
-                    value, frac, std::ldexp(static_cast<double>(result), -frac)),
-        "more guard bits in the arch file keep it")
-        .about(keys);
+        fmt::format("{} is {:.6g} in units of the lattice: {} fractional bits round it to {:.6g}", q.what,
+                    q.value, frac, std::ldexp(static_cast<double>(result), -frac)),
+        keeps())
+        .about(q.keys);
   return result;
 }
 
@@ -363,14 +371,16 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
         std::min(fixed.cutoff2, static_cast<uint64_t>(std::llround(std::ldexp(reach * reach, 2 * D))));
   }
 
-  const bool fits_octaves = [&] {
-    const FixedTable table = shaped(TableShape::octaves, choice, D, std::pow(rule.core() / cell_edge, 2));
-    return table.bin_bits >= 1;
-  }();
+  // So many bits that an octave has two entries.
+  const int octave_index_bits =
+      choice.index_bits + 1 -
+      shaped(TableShape::octaves, choice, D, std::pow(rule.core() / cell_edge, 2)).bin_bits;
+  const bool fits_octaves = choice.index_bits >= octave_index_bits;
   if (choice.shape == TableChoice::Shape::octaves && !fits_octaves)
     throw InputError(
         fmt::format("{} index bits are too few for the octaves between the law's core and its cutoff",
-                    choice.index_bits))
+                    choice.index_bits),
+        fmt::format("index_bits = {}, or shape = \"uniform\", in the arch file's [table]", octave_index_bits))
         .about({"table.index_bits", "table.shape"});
   if (widths.strength_bits == 0) {
     double pull = std::numeric_limits<double>::infinity();  // of the weakest law
@@ -399,12 +409,14 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
                     "fractional bits ({}) than velocities ({})",
                     std::ldexp(1.0, fixed.widths.strength_bits - 1 - fixed.force.value_frac),
                     fixed.widths.strength_bits, fixed.force.value_frac + D, frac),
-        "use a smaller dt, a larger core, more strength_bits, or fewer guard bits")
+        kicks_that_fit(fixed.widths, -fixed.kick_shift, rule.dt))
         .about(law_keys(rule));
   if (fixed.damp_shift < 0)
     throw InputError(
         fmt::format("the damping c/r^2 * dt/m reaches {:.3g}: too strong beside the pair law for {} bits",
-                    std::ldexp(1.0, widths.strength_bits - 1 - fixed.damp.value_frac), widths.strength_bits))
+                    std::ldexp(1.0, fixed.widths.strength_bits - 1 - fixed.damp.value_frac),
+                    fixed.widths.strength_bits),
+        damping_that_fits(fixed.widths, -fixed.damp_shift))
         .about({"damping.coefficient", "damping.ratio"});
 
   const double length = cell_edge;
@@ -417,21 +429,27 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
     t.pd = type.pd;
     for (int a = 0; a < 3; ++a) {
       const double velocity = rule.dt / length, gravity = velocity * rule.dt;
-      t.velocity[a] = quantised(type.velocity[a] * velocity, type.velocity.norm() * velocity, frac,
-                                widths.velocity_bits, "an imposed velocity", keys_of(type, "velocity"));
+      const Quantity imposed{"an imposed velocity", type.velocity[a] * velocity,
+                             type.velocity.norm() * velocity, 1, keys_of(type, "velocity")};
+      t.velocity[a] = quantised(imposed, rule.dt, frac, widths.velocity_bits,
+                                [&] { return guard_that_keeps(imposed.whole, widths); });
       const bool pulled = !type.pull.isZero(0);
       std::vector<std::string> keys = {"gravity"};
       for (const char* key : {"traction", "force"})
         if (pulled) keys.insert(keys.begin(), keys_of(type, key).front());
-      t.gravity[a] =
-          quantised(type.gravity[a] * gravity, std::max(type.gravity.norm(), type.pull.norm()) * gravity,
-                    frac, widths.velocity_bits, pulled ? "the acceleration by a force" : "gravity", keys);
+      const Quantity weight{pulled ? "the acceleration by a force" : "gravity", type.gravity[a] * gravity,
+                            std::max(type.gravity.norm(), type.pull.norm()) * gravity, 2, keys};
+      t.gravity[a] = quantised(weight, rule.dt, frac, widths.velocity_bits,
+                               [&] { return guard_that_keeps(weight.whole, widths); });
     }
     if (type.pd) {
       const double mass = rule.mass_of(index);
       const double kp = type.kp * rule.dt * rule.dt / mass, kd = type.kd * rule.dt / mass;
-      t.kp = quantised(kp, kp, widths.gain_frac, 18, "the gain kp", keys_of(type, "kp"));
-      t.kd = quantised(kd, kd, widths.gain_frac, 18, "the gain kd", keys_of(type, "kd"));
+      const auto keeps = [&] { return gains_that_are_kept(rule, static_cast<size_t>(index)); };
+      t.kp = quantised({"the gain kp", kp, kp, 2, keys_of(type, "kp")}, rule.dt, widths.gain_frac, kGainBits,
+                       keeps);
+      t.kd = quantised({"the gain kd", kd, kd, 1, keys_of(type, "kd")}, rule.dt, widths.gain_frac, kGainBits,
+                       keeps);
       fixed.pd = true;
     }
     fixed.types.push_back(t);
@@ -443,8 +461,9 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
       if (fixed.law_bits > 0) fixed.law.emplace_back();
       for (size_t j = 0; j < rule.types.size(); ++j) {
         const double strength = rule.strength_of(static_cast<int>(i), static_cast<int>(j)) / scale;
-        const auto size = static_cast<int32_t>(quantised(strength, strength, widths.scale_frac, 18,
-                                                         "a pair strength", strength_keys(rule, i, j)));
+        const auto size = static_cast<int32_t>(
+            quantised({"a pair strength", strength, strength, 1, strength_keys(rule, i, j)}, rule.dt,
+                      widths.scale_frac, 18, [] { return std::string(kDoublesHold); }));
         fixed.scale[i].push_back(rule.only_touch(static_cast<int>(i), static_cast<int>(j)) ? -size : size);
         if (fixed.law_bits > 0)
           fixed.law[i].push_back(

@@ -186,7 +186,7 @@ int run(std::span<char*> arguments) {
   std::set<uint32_t> nodes;
   for (char* text : arguments.subspan(6)) nodes.insert(static_cast<uint32_t>(std::stoul(text)));
   if (nodes.empty()) nodes = busiest_median_idlest(counted.nodes);
-  emit_rtl(plan, initial, out + "/project", 0);
+  emit_rtl(plan, initial, out + "/project", {.vector_steps = 0});
   const auto factory = [&](uint32_t n, uint8_t links) -> std::unique_ptr<emu::NodeModel> {
     if (nodes.contains(n))
       return std::make_unique<Recorder>(plan, links, fmt::format("{}/node_{}.hex", out, n));

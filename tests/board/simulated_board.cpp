@@ -56,7 +56,7 @@ SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const st
                                const BoardChoice& board) {
   const Setup setup = board_setup("grips.toml", arch);
   const std::string project = scratch_.path("project"), out = scratch_.path("out");
-  emit_rtl(setup.plan, setup.initial, project, 1, board);
+  emit_rtl(setup.plan, setup.initial, project, {.board = board});
   std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
   arguments.insert(arguments.end(), options.begin(), options.end());
   process_ =

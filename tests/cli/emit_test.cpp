@@ -50,6 +50,18 @@ TEST(Emit, TellsAnArchFromAScene) {
   EXPECT_FALSE(std::filesystem::exists(bench.path("none")));
 }
 
+// Before anything is built, and nothing is written.
+TEST(Emit, RefusesAPrefixThatIsNoName) {
+  const Bench bench(false);
+  const Answer refused =
+      bench.cuboct({"emit", "scenes/lj_block.toml", "--prefix", "2nd", "--out", bench.path("none")});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.err,
+            "--prefix '2nd': names of SystemVerilog cannot begin so\n"
+            "  hint: at most 64 letters, digits and '_', a letter first\n");
+  EXPECT_FALSE(std::filesystem::exists(bench.path("none")));
+}
+
 #ifdef CUBOCT_HAS_SYNTH
 // Far too many nodes: told at once, without a tool.
 TEST(Emit, RefusesABoardThatHasNoRoom) {

@@ -73,7 +73,8 @@ int main(int argc, char** argv) {
   }
   try {
     const test::Case c = case_of(argv[1]);
-    emit_rtl(c.setup.plan, c.setup.initial, argv[2], argc == 4 ? std::stoull(argv[3]) : c.steps);
+    emit_rtl(c.setup.plan, c.setup.initial, argv[2],
+             {.vector_steps = argc == 4 ? std::stoull(argv[3]) : c.steps});
   } catch (const std::exception& e) {
     std::fprintf(stderr, "emit_case: %s\n", e.what());
     return 1;

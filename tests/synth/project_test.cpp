@@ -27,7 +27,7 @@ class Refuse : public ::testing::Test {
   void emit(const std::optional<CountedCycles>& counted = {}) {
     const std::string here = CUBOCT_SOURCE_DIR "/tests/synth/";
     const cuboct::Setup setup = make_setup(read_scene(here + "sheet.toml"), read_arch(here + "narrow.toml"));
-    emit_rtl(setup.plan, setup.initial, dir_, 1, {}, "", counted);
+    emit_rtl(setup.plan, setup.initial, dir_, {.counted = counted});
     plan_ = setup.plan;
   }
   std::string refusal(const Request& request) const {

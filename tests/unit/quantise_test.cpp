@@ -175,20 +175,21 @@ TEST(Quantise, RefusesWithNumbers) {
   EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {.degree = 3}); }),
             "table degree = 3 is out of range: 1 to 2");
   EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {.shape = TableChoice::Shape::octaves, .index_bits = 2}); }),
-            "2 index bits are too few for the octaves between the law's core and its cutoff");
+            "2 index bits are too few for the octaves between the law's core and its cutoff\n"
+            "  hint: index_bits = 3, or shape = \"uniform\", in the arch file's [table]");
   rule.types[0].velocity = Vec3(12, 0, 0);
   EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {}); }),
             "an imposed velocity is 1.125 in units of the lattice: 29 bits with 28 fractional bits hold less "
             "than 1\n"
-            "  hint: a smaller dt helps, or a wider format in the arch file");
+            "  hint: a dt of at most 0.133 s holds it");
   rule.types[0].velocity = Vec3::Zero();
   rule.types[0].gravity = Vec3(0, 0, 1e-6);
   EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {}); }),
             "gravity is 1.40625e-08 in units of the lattice: 28 fractional bits round it to 1.49012e-08\n"
-            "  hint: more guard bits in the arch file keep it");
+            "  hint: guard = 12 in the arch file keeps it");
   rule.types[0].gravity = Vec3::Zero();
   rule.dt = 3000;
-  EXPECT_NE(text([&] { quantise(rule, 1.6, {}, {}); }).find("use a smaller dt"), std::string::npos);
+  EXPECT_NE(text([&] { quantise(rule, 1.6, {}, {}); }).find("a dt of at most "), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "hw/rtl_emit.h"
+#include "hw/rtl_prefix.h"
 #include "hw/rtl_template.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,7 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
           BoardChoice{.name = "", .bus = "axi4lite"},
           BoardChoice{.name = "", .velocities = false, .bus = "wishbone"}}) {
       const auto setup = make_setup(held, arch);
-      emit_rtl(setup.plan, setup.initial, root.string(), 1, board);
+      emit_rtl(setup.plan, setup.initial, root.string(), {.board = board});
       size_t copies = 0;
       for (const auto& entry : fs::recursive_directory_iterator(root)) {
         const fs::path name = entry.path().filename();
@@ -72,6 +73,53 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
       EXPECT_EQ(text_of(root / "rtl/cuboct_node.sv").find(".MovedTypes(0)") == std::string::npos, settable);
       fs::remove_all(root);
     }
+}
+
+// A prefix is in front of every name and of nothing else: taken off, it leaves what was emitted without.
+TEST(RtlEmit, PrefixesEveryName) {
+  const Scene held = test::block_scene({.size = {2, 1, 1}, .held = true});
+  const auto setup = make_setup(held, Arch{});
+  const fs::path root = fs::temp_directory_path() / ("cuboct-emit-prefix-" + std::to_string(getpid()));
+  for (const BoardChoice& board :
+       {BoardChoice{.name = "ulx3s"}, BoardChoice{.name = "", .bus = "axi4lite"}}) {
+    emit_rtl(setup.plan, setup.initial, root / "plain", {.board = board, .arch = "name = \"cuboct_x\"\n"});
+    emit_rtl(setup.plan, setup.initial, root / "left",
+             {.board = board, .prefix = "left", .arch = "name = \"cuboct_x\"\n"});
+    size_t modules = 0, memories = 0, files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(root / "left")) {
+      if (!entry.is_regular_file() || entry.path().filename() == ".cuboct-emit") continue;
+      ++files;
+      const fs::path path = fs::relative(entry.path(), root / "left");
+      const std::string name = path.filename(), text = text_of(entry.path());
+      const bool memory = path.extension() == ".hex";
+      const std::string plain =
+          memory ? name.substr(std::string("left_").size()) : without_prefix(name, "left_");
+      EXPECT_TRUE((path.extension() != ".sv" && !memory) || name.starts_with("left_")) << path;
+      modules += path.extension() == ".sv";
+      memories += memory;
+      std::string same = without_prefix(text, "left_");
+      if (name == "left_cuboct_bench.sv")
+        for (size_t at; (at = same.find("\"left_")) != std::string::npos;) same.erase(at + 1, 5);
+      EXPECT_EQ(same, text_of(root / "plain" / path.parent_path() / plain)) << path;
+      // No name is left without; "cuboct_" in a longer word is part of a name with the prefix.
+      if (name == "arch.toml") continue;
+      for (size_t at = text.find("cuboct_"); at != std::string::npos; at = text.find("cuboct_", at + 1))
+        EXPECT_TRUE(at >= 5 && text.compare(at - 5, 5, "left_") == 0) << path << ": " << text.substr(at, 30);
+    }
+    EXPECT_GE(modules, 40u);
+    EXPECT_EQ(memories, 3u);
+    size_t others = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(root / "plain"))
+      others += entry.is_regular_file();
+    EXPECT_EQ(files + 1, others);
+    fs::remove_all(root);
+  }
+  for (const char* name : {"", "2x", "a-b", "a b", "a.b", "_a", "\xc3\xa4",
+                           "abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyzabcdefghijklm"})
+    EXPECT_THROW(check_prefix(name), InputError) << name;
+  for (const char* name : {"a", "Left_2", "cuboct"}) EXPECT_NO_THROW(check_prefix(name)) << name;
+  EXPECT_EQ(prefix_of({"rtl/left_cuboct_pkg.sv", "rtl/left_cuboct_lattice.sv"}), "left_");
+  EXPECT_EQ(prefix_of({"rtl/cuboct_lattice.sv"}), "");
 }
 
 // A place of a template that nothing fills would reach a user's project.

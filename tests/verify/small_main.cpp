@@ -17,9 +17,9 @@ int main(int argc, char** argv) {
   try {
     const auto c = cuboct::test::small_case(argv[1]);
     try {
-      cuboct::emit_rtl(c.setup.plan, c.setup.initial, argv[2], c.steps);
+      cuboct::emit_rtl(c.setup.plan, c.setup.initial, argv[2], {.vector_steps = c.steps});
     } catch (const cuboct::RunError& e) {  // the bench ends before the step that faults
-      cuboct::emit_rtl(c.setup.plan, c.setup.initial, argv[2], e.step);
+      cuboct::emit_rtl(c.setup.plan, c.setup.initial, argv[2], {.vector_steps = e.step});
     }
   } catch (const std::exception& e) {
     std::fprintf(stderr, "rtl_small_case: %s\n", e.what());
