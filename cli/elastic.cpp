@@ -142,7 +142,13 @@ int elastic(const Options& options) {
   check(options);
   catch_interrupts();
   const Scene scene = scene_of(options);
-  const ElasticFindings found = findings_of(options, scene);
+  const ElasticFindings found = [&] {
+    try {
+      return findings_of(options, scene);
+    } catch (const InputError& error) {
+      throw scene.places.placed(error);
+    }
+  }();
   fmt::print("{}", options.json ? json_of(found) : text_of(found));
   if (!options.polar.empty() && found.stable()) draw(found, options.polar);
   return found.stable() ? 0 : 1;

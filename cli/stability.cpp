@@ -12,6 +12,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
+#include "hw/setup.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -178,10 +179,7 @@ void check(const Options& options) {
     throw InputError(fmt::format("--axis: '{}' is not x, y or z", options.axis));
 }
 
-void stability(const Options& options) {
-  check(options);
-  const Scene scene = read_scene(options.input.scene);
-  const Arch arch = read_arch(options.input.arch);
+void measure(const Options& options, const Scene& scene, const Arch& arch) {
   if (scene.body.size() > kMostParticles)
     throw InputError(fmt::format("{} particles: 'cuboct stability' builds the matrix of at most {}",
                                  scene.body.size(), kMostParticles),
@@ -243,6 +241,13 @@ void stability(const Options& options) {
     throw Failed("interrupted");
   }
   print();
+}
+
+void stability(const Options& options) {
+  check(options);
+  const Scene scene = read_scene(options.input.scene);
+  const Arch arch = read_arch(options.input.arch);
+  with_places(scene, arch, [&] { measure(options, scene, arch); });
 }
 
 }  // namespace

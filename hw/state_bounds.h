@@ -13,8 +13,9 @@ inline StateBounds bounds_of(const Plan& plan) {
           plan.rule.widths.velocity_bits};
 }
 
-// The next particle of a checkpoint, which may be a stranger's. InputError where it cannot be of the plan.
-Particle checked_particle(CheckpointReader& from, const Plan& plan);
+// The next particle of a checkpoint, which may be a stranger's. InputError where it cannot be of the plan, or
+// is one of those that were `seen`: of each id, whether it came.
+Particle checked_particle(CheckpointReader& from, const Plan& plan, std::vector<bool>& seen);
 // All of them, in the order of the slots.
 State checked_state(CheckpointReader& from, const Plan& plan);
 

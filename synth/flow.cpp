@@ -32,6 +32,9 @@ class Pending {
   ~Pending() {
     std::error_code none;
     fs::remove_all(path_, none);
+    // And what was made above it, where nothing came of it: DIR/synth/TARGET.
+    const fs::path target = fs::path(path_).parent_path();
+    if (fs::remove(target, none)) fs::remove(target.parent_path(), none);
   }
   Pending(const Pending&) = delete;
   Pending& operator=(const Pending&) = delete;
@@ -102,11 +105,12 @@ class Flow {
   // Leaves the unit's counts in the report.
   void synthesise() {
     need("yosys");
+    const bool asic = target_.family == Family::asic;
+    if (asic) need("sta");
+    const CostOf costs = asic ? costs_of_liberty(liberty()) : costs_of(target_.family);
     report_.tools.push_back(first_line("yosys", "-V"));
     Synthesis s;
     s.out = out_;
-    const bool asic = target_.family == Family::asic;
-    if (asic) need("sta");
     const bool board = request_.unit == "board", lattice = request_.unit == "lattice";
     if (board) {
       const Board b = read_board(project_);
@@ -142,7 +146,6 @@ class Flow {
     if (asic) tools_.write("abc.constr", "set_load 0.02 [all_outputs]\n");  // pF: one or two inputs
     tools_.write("synth.ys", asic ? asic_script(s, liberty()) : fpga_script(s, target_));
     tools_.run("yosys synthesises", "yosys", "yosys", {out_ + "/synth.ys"});
-    const CostOf costs = asic ? costs_of_liberty(liberty()) : costs_of(target_.family);
     report_.block = read_netlist(tools_.path("netlist.json"), s.unit, design, s.module, costs);
     report_.used = count_all(tools_.path("netlist.json"), top_, costs);
     report_.depth = read_depth(read_text(tools_.path("yosys.log")));

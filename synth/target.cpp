@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "synth/target.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <regex>
@@ -9,6 +12,7 @@
 
 #include "model/base/enum_names.h"
 #include "model/base/error.h"
+#include "model/base/excerpt.h"
 #include "model/base/input_file.h"
 #include "model/base/spelling.h"
 
@@ -124,6 +128,30 @@ CostOf costs_of(Family family) {
   };
 }
 
+namespace {
+
+struct LibertyPlace {
+  const std::string &file, &line;
+  int number;
+  size_t at;
+};
+
+// Of a cell, in the library's own unit.
+uint64_t area_of(const std::string& text, const LibertyPlace& place) {
+  constexpr double kMost = 1e12;
+  double area = -1;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, area);
+  if (error != std::errc() || stop != end || !(area >= 0 && area <= kMost)) {
+    const int column = characters(std::string_view(place.line).substr(0, place.at)) + 1;
+    throw InputError(place.file, place.number, column, fmt::format("'{}' is no area of a cell", text), {},
+                     excerpt(place.line, place.number, column));
+  }
+  return static_cast<uint64_t>(std::llround(area));
+}
+
+}  // namespace
+
 CostOf costs_of_liberty(const std::string& file) {
   // cell (NAME) { ... area : A; ... ff (...) or latch (...) ... }: the one level of the format that is needed
   // here.
@@ -134,13 +162,15 @@ CostOf costs_of_liberty(const std::string& file) {
   Costs costs;
   Counts* cell = nullptr;
   std::smatch m;
+  int number = 0;
   for (std::string line; std::getline(in, line);) {
+    ++number;
     if (line.size() > 300) continue;  // tables; the forms are short
     if (std::regex_search(line, m, cell_form)) {
       cell = &(costs[m[1]] = {});
       (*cell)[Resource::gates] = 1;
     } else if (cell && std::regex_search(line, m, area_form)) {
-      (*cell)[Resource::area] = static_cast<uint64_t>(std::llround(std::stod(m[1])));
+      (*cell)[Resource::area] = area_of(m[1], {file, line, number, static_cast<size_t>(m.position(1))});
     } else if (cell && std::regex_search(line, m, register_form)) {
       (*cell)[Resource::gates] = 0;
       (*cell)[Resource::ff] = 1;

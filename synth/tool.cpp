@@ -24,6 +24,15 @@ const std::map<std::string, std::string> kPackages = {
     {"sta", "opensta"},
 };
 
+// yosys keeps a history of its commands in HOME, and leaves what it gave to abc in TMPDIR where it ends with
+// an error.
+int run_apart(const std::string& program, const std::vector<std::string>& arguments, const Streams& streams) {
+  const Scratch scratch;
+  std::vector<std::string> words{"-u", "HOME", "TMPDIR=" + scratch.path("."), program};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return Process("env", words, false, streams).wait();
+}
+
 }  // namespace
 
 ToolFailed::ToolFailed(const std::string& tool, const std::string& log_name, const std::string& complaint)
@@ -46,7 +55,7 @@ void Runner::run(const std::string& what, const std::string& name, const std::st
   if (interrupted()) throw Interrupted();
   begins_(what);
   const std::string out = path(name + ".log"), err = path(name + ".err");
-  const int status = Process(program, arguments, false, {out, err}).wait();
+  const int status = run_apart(program, arguments, {out, err});
   // One log: what went to stderr, if anything, after what went to stdout.
   {
     std::ofstream all(out, std::ios::app);
@@ -69,7 +78,7 @@ std::string first_line(const std::string& program, const std::string& argument) 
   const Scratch scratch;
   const std::string out = scratch.path("out"), err = scratch.path("err");
   if (!in_path(program)) return "";
-  Process(program, {argument}, false, {out, err}).wait();
+  run_apart(program, {argument}, {out, err});
   for (const std::string& file : {out, err}) {
     std::istringstream text(read_text(file));
     std::string line;

@@ -71,9 +71,10 @@ void Runner::feed(const Scene& scene, const LatticeChoice& choice, CheckpointRea
   const bool shrink = !from && choice.spare && (!ranks_ || ranks_->size() == 1);
   std::optional<InitialParticles> shrinking;
   if (shrink) shrinking.emplace(std::exchange(*choice.spare, {}), plan_);
+  std::vector<bool> seen;
   const auto next = [&](uint32_t k) {
-    if (k == 0 && from) from->rewind();  // ranks take the particles twice
-    if (from) return checked_particle(*from, plan_);
+    if (k == 0 && from) from->rewind(), seen.assign(plan_.particles, false);  // ranks take them twice
+    if (from) return checked_particle(*from, plan_, seen);
     if (choice.from) return choice.from->particles[k];
     return shrinking ? (*shrinking)(k)
                      : fixed_particle(scene.body, k, plan_.rule, plan_.lattice, plan_.origin);

@@ -14,8 +14,20 @@ namespace {
 
 constexpr std::string_view kHint = "\n  hint: ";
 
+// A name from a file may have megabytes. Both ends of the message stay: what it is about, and what is wrong.
+std::string line_of(const std::string& text) {
+  constexpr size_t kHead = 1200, kTail = 600;
+  if (text.size() <= kHead + kTail + 100) return line_text(text);
+  const auto begins = [&](size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0) != 0x80; };
+  size_t head = kHead, tail = text.size() - kTail;
+  while (head > 0 && !begins(head)) --head;
+  while (tail < text.size() && !begins(tail)) ++tail;
+  return line_text(text.substr(0, head)) + fmt::format(" ... ({} bytes more) ... ", tail - head) +
+         line_text(text.substr(tail));
+}
+
 std::string with_hint(const std::string& message, const std::string& hint) {
-  return hint.empty() ? line_text(message) : line_text(message) + std::string(kHint) + line_text(hint);
+  return hint.empty() ? line_of(message) : line_of(message) + std::string(kHint) + line_of(hint);
 }
 
 }  // namespace

@@ -83,14 +83,19 @@ double element_volume(const ElementMesh& mesh, size_t element) {
   return signed_volume(p[1] - p[0], p[2] - p[0], p[3] - p[0]);
 }
 
-void check_mesh(const ElementMesh& mesh, const std::string& name) {
+void check_mesh(const ElementMesh& mesh, const std::string& name, const MeshLines& lines) {
+  const auto fail = [&](const std::vector<int>& line, size_t k, const std::string& message,
+                        const std::string& hint = {}) {
+    if (k < line.size()) throw InputError(name, line[k], 1, message, hint);
+    throw InputError(fmt::format("{}: {}", name, message), hint);
+  };
   std::vector<bool> used(mesh.x.size(), false);
   for (size_t e = 0; e < mesh.elements.size(); ++e) {
     double longest = 0;
     for (const ElementMesh::Corner& corner : mesh.elements[e]) {
       if (corner.vertex >= mesh.x.size())
-        throw InputError(
-            fmt::format("{}: element {} has vertex {} of {}", name, e + 1, corner.vertex + 1, mesh.x.size()));
+        fail(lines.elements, e,
+             fmt::format("element {} has vertex {} of {}", e + 1, corner.vertex + 1, mesh.x.size()));
       used[corner.vertex] = true;
       longest = std::max(longest, (corner_place(corner, mesh.x, mesh.period) -
                                    corner_place(mesh.elements[e][0], mesh.x, mesh.period))
@@ -98,13 +103,16 @@ void check_mesh(const ElementMesh& mesh, const std::string& name) {
     }
     const double volume = element_volume(mesh, e);
     if (!(volume > kFlat * longest * longest * longest))
-      throw InputError(fmt::format("{}: element {} is {}: its volume is {:.3g} m^3", name, e + 1,
-                                   volume < 0 ? "inverted" : "flat", volume),
-                       volume < 0 ? "exchange two of its vertices" : "");
+      fail(lines.elements, e,
+           fmt::format("element {} is {}: its volume is {:.3g} m^3", e + 1, volume < 0 ? "inverted" : "flat",
+                       volume),
+           volume < 0 ? "exchange two of its vertices" : "");
   }
-  if (const auto orphan = std::ranges::find(used, false); orphan != used.end())
-    throw InputError(fmt::format("{}: vertex {} belongs to no element", name, orphan - used.begin() + 1),
-                     "a vertex without an element has no mass and no force");
+  if (const auto orphan = std::ranges::find(used, false); orphan != used.end()) {
+    const auto k = static_cast<size_t>(orphan - used.begin());
+    fail(lines.vertices, k, fmt::format("vertex {} belongs to no element", k + 1),
+         "a vertex without an element has no mass and no force");
+  }
 }
 
 ElementMesh box_mesh(const Index3& cubes, const Vec3& size, const std::array<bool, 3>& repeats,

@@ -32,9 +32,14 @@ Vec3 corner_place(const ElementMesh::Corner& corner, const std::vector<Vec3>& x,
 double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c);
 double element_volume(const ElementMesh& mesh, size_t element);
 
+// Lines of a file, from 1, where each of its vertices and elements stands.
+struct MeshLines {
+  std::vector<int> vertices, elements;
+};
+
 // InputError for an element that is inverted or flat, a vertex that no element has, a corner that is not
 // there. Elements and vertices count from 1, as in files of meshes. `name` of the mesh begins the message.
-void check_mesh(const ElementMesh& mesh, const std::string& name);
+void check_mesh(const ElementMesh& mesh, const std::string& name, const MeshLines& lines = {});
 
 // A box from 0 to `size` (m) of cubes, six tetrahedra each: H. W. Kuhn's division along a diagonal of the
 // cube, which is mirrored in every second cube of each axis. So neighbours share their faces, and no

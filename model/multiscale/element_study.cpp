@@ -299,6 +299,7 @@ ElementStudy element_study_of(const ConfigTable& root, const std::string& path,
   if (const auto compare = root.table_at("compare"))
     out.compare = read_compare(*compare, out, root.at("mesh").table().has("cubes"), grain_cubes);
   root.done();
+  out.places = root.places();
   if (effort) apply(*effort, out);
   if (!out.stretch && !out.wave) root.fail("nothing to study: the file has neither [stretch] nor [wave]");
   check_mesh(out.mesh, out.mesh_name);
@@ -322,9 +323,11 @@ std::shared_ptr<const SampleMaterial> material_of(const ElementStudy& study) {
     return std::make_shared<const SampleMaterial>(
         crystal_material(m.crystal, m.law, m.guess, m.cells, m.mass, m.force));
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}: {}", study.path, m.name, first_line(error.what())),
-                     fmt::format("these parameters hold no stable lattice of {}",
-                                 m.crystal == Crystal::fcc ? "FCC" : "diamond"));
+    study.places.fail(
+        {"material.potential", "material.file", "material.parameters", "material.springs", "material"},
+        fmt::format("{}: {}", m.name, first_line(error.what())),
+        fmt::format("these parameters hold no stable lattice of {}",
+                    m.crystal == Crystal::fcc ? "FCC" : "diamond"));
   }
 }
 

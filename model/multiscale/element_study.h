@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/bond_order/tersoff_terms.h"
+#include "model/contract/places.h"
 #include "model/multiscale/element_body.h"
 #include "model/multiscale/shell_springs.h"
 #include "model/multiscale/wave.h"
@@ -65,6 +66,7 @@ struct CompareInput {
 
 struct ElementStudy {
   std::string path, title;
+  Places places;      // of the file's keys
   uint64_t hash = 0;  // of the file's text, and of the mesh's; of what an effort changed
   MaterialInput material;
   ElementMesh mesh;

@@ -55,6 +55,7 @@ class Words {
       fail(fmt::format("{:g} is not a whole number", value));
     return static_cast<int64_t>(value);
   }
+  int line() const { return line_; }
   [[noreturn]] void fail(const std::string& message) const { throw InputError(path_, line_, 1, message); }
 
  private:
@@ -101,6 +102,7 @@ class GmshFile {
     number_grains();
     return std::move(mesh_);
   }
+  const MeshLines& lines() const { return lines_; }
 
  private:
   void read_format() {
@@ -120,6 +122,7 @@ class GmshFile {
       words_.fail(fmt::format("node {} stands twice", tag));
     const double x = words_.number(), y = words_.number(), z = words_.number();
     mesh_.x.push_back(unit_ * Vec3(x, y, z));
+    lines_.vertices.push_back(words_.line());
   }
   void read_nodes2() {
     need_format();
@@ -157,6 +160,7 @@ class GmshFile {
     }
     if (!kind->solid) return;
     mesh_.elements.push_back(corners);
+    lines_.elements.push_back(words_.line());
     entity_.push_back(entity);
   }
   void read_elements2() {
@@ -194,6 +198,7 @@ class GmshFile {
   Words words_;
   double unit_, version_ = 0;
   ElementMesh mesh_;
+  MeshLines lines_;
   std::map<int64_t, uint32_t> node_;  // by tag
   std::vector<int64_t> entity_;       // of each element
 };
@@ -208,7 +213,7 @@ Extent extent_of(const ElementMesh& mesh, int axis) {
 }
 
 // Vertices of the upper face become those of the lower one, an image further.
-void join(ElementMesh& mesh, int axis, const std::string& path) {
+void join(ElementMesh& mesh, int axis, const std::string& path, std::vector<int>& lines) {
   const auto [low, high] = extent_of(mesh, axis);
   const double near = kSame * (high - low);
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -225,10 +230,10 @@ void join(ElementMesh& mesh, int axis, const std::string& path) {
       return std::abs(mesh.x[k][u] - mesh.x[i][u]) < near && std::abs(mesh.x[k][v] - mesh.x[i][v]) < near;
     });
     if (found == lower.end())
-      throw InputError(
-          fmt::format("{}: vertex {} of the upper face along {} has none across in the lower one", path,
-                      i + 1, "xyz"[axis]),
-          "make the mesh periodic (Gmsh: Periodic Surface), or leave the axis out of 'repeats'");
+      throw InputError(path, lines[i], 1,
+                       fmt::format("vertex {} of the upper face along {} has none across in the lower one",
+                                   i + 1, "xyz"[axis]),
+                       "make the mesh periodic (Gmsh: Periodic Surface), or leave the axis out of 'repeats'");
     below[i] = *found;
   }
   for (auto& element : mesh.elements)
@@ -237,23 +242,27 @@ void join(ElementMesh& mesh, int axis, const std::string& path) {
         corner.vertex = found->second, ++corner.image[axis];
   std::vector<uint32_t> renumbered(mesh.x.size());
   std::vector<Vec3> kept;
+  std::vector<int> kept_lines;
   for (uint32_t i = 0; i < mesh.x.size(); ++i) {
     renumbered[i] = static_cast<uint32_t>(kept.size());
-    if (!below.contains(i)) kept.push_back(mesh.x[i]);
+    if (!below.contains(i)) kept.push_back(mesh.x[i]), kept_lines.push_back(lines[i]);
   }
   for (auto& element : mesh.elements)
     for (ElementMesh::Corner& corner : element) corner.vertex = renumbered[corner.vertex];
   mesh.x = std::move(kept);
+  lines = std::move(kept_lines);
   mesh.period[axis] = high - low;
 }
 
 }  // namespace
 
 ElementMesh read_gmsh(const std::string& path, double unit, const std::array<bool, 3>& repeats) {
-  ElementMesh mesh = GmshFile(path, unit).read();
-  check_mesh(mesh, path);
+  GmshFile file(path, unit);
+  ElementMesh mesh = file.read();
+  MeshLines lines = file.lines();
+  check_mesh(mesh, path, lines);
   for (int axis = 0; axis < 3; ++axis)
-    if (repeats[axis]) join(mesh, axis, path);
+    if (repeats[axis]) join(mesh, axis, path, lines.vertices);
   return mesh;
 }
 

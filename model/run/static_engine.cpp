@@ -185,8 +185,8 @@ EngineKind static_kind(const Scene& scene, const Body& start, int threads, doubl
 
 void refuse_static(const Scene& scene, const std::string& who) {
   if (scene.loading)
-    throw InputError(fmt::format("{}: static loading is not for {}", scene.path, who),
-                     "the reference engine relaxes; 'static = false' lets the body move");
+    scene.places.fail({"run.static"}, fmt::format("static loading is not for {}", who),
+                      "the reference engine relaxes; 'static = false' lets the body move");
 }
 
 }  // namespace cuboct

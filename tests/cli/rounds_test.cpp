@@ -113,6 +113,7 @@ TEST_F(RoundsTest, WhatKnowsPairsAloneRefuses) {
                                              {"emit", path, "--out", bench_.path("rtl")}}) {
     const Answer answer = bench_.cuboct(command);
     EXPECT_EQ(answer.code, 2) << command[0] << answer.out << answer.err;
+    EXPECT_EQ(answer.err.find(path + ":"), 0U) << command[0] << answer.err;
     EXPECT_NE(answer.err.find("knows the pair law alone"), std::string::npos) << command[0] << answer.err;
     EXPECT_NE(answer.err.find("reference engine runs it"), std::string::npos) << command[0] << answer.err;
   }

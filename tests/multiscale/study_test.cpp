@@ -236,6 +236,17 @@ TEST(Gmsh, JoinsFacesThatRepeat) {
   const Folder folder;
   const ElementMesh joined =
       read_gmsh(folder.write("box.msh", text + "$EndElements\n"), 1, {true, false, true});
+  // Vertex 3 of the upper face has no counterpart.
+  const std::string moved = changed(text, "\n3 2 0 0\n", "\n3 2 0.5 0\n");
+  try {
+    read_gmsh(folder.write("moved.msh", moved + "$EndElements\n"), 1, {true, false, false});
+    ADD_FAILURE() << "joined";
+  } catch (const InputError& error) {
+    EXPECT_NE(
+        std::string(error.what()).find("moved.msh:8:1: vertex 3 of the upper face along x has none across"),
+        std::string::npos)
+        << error.what();
+  }
   const ElementMesh expected = box_mesh({2, 2, 2}, {2, 3, 2}, {true, false, true}, 100);
   EXPECT_EQ(joined.x, expected.x);
   EXPECT_EQ(joined.period, expected.period);
@@ -257,11 +268,12 @@ TEST(Gmsh, RefusesWhatIsNoMeshOfTetrahedra) {
     }
     return std::string();
   };
-  EXPECT_EQ(told(changed(kMsh2, "8 5 2 3 4", "8 5 2 4 3")),
-            "a.msh: element 1 is inverted: its volume is -0.0667 m^3\n  hint: exchange two of its vertices");
   EXPECT_EQ(
-      told(changed(kMsh2, "5\n" + kNodes, "6\n" + kNodes + "6 9 9 9\n")),
-      "a.msh: vertex 6 belongs to no element\n  hint: a vertex without an element has no mass and no force");
+      told(changed(kMsh2, "8 5 2 3 4", "8 5 2 4 3")),
+      "a.msh:15:1: element 1 is inverted: its volume is -0.0667 m^3\n  hint: exchange two of its vertices");
+  EXPECT_EQ(told(changed(kMsh2, "5\n" + kNodes, "6\n" + kNodes + "6 9 9 9\n")),
+            "a.msh:11:1: vertex 6 belongs to no element\n  hint: a vertex without an element has no mass and "
+            "no force");
   EXPECT_EQ(told(changed(kMsh2, "2 4 2 0 8 5 2 3 4", "2 5 2 0 8 5 2 3 4 1 2 3 4")),
             "a.msh:15:1: element 2 is of type 5: elements are tetrahedra of four nodes");
   EXPECT_EQ(told(changed(kMsh2, "3 4 2 0 3 1 5 3 4", "3 4 2 0 3 1 5 3 9")),

@@ -201,6 +201,11 @@ TEST_F(Parse, CellsOfALibrary) {
   EXPECT_FALSE(cost("OR2X1"));
   EXPECT_EQ(refusal([&] { costs_of_liberty(file("b.lib", "no library")); }),
             "b.lib: describes no cell\n  hint: a liberty file is needed");
+  for (const std::string area : {".", "e", "1e999", "-1", "1e13", "1-2"})
+    EXPECT_EQ(refusal([&] {
+                costs_of_liberty(file("c.lib", "library(x) {\n cell (A) {\n  area : " + area + ";\n }\n}\n"));
+              }),
+              "c.lib:3:10: '" + area + "' is no area of a cell");
 }
 
 TEST_F(Parse, Harness) {

@@ -88,6 +88,14 @@ TEST(Excerpt, StandsBetweenMessageAndHint) {
   EXPECT_STREQ(error.what(), "a.toml:1:2: wrong\n  hint: a hint");
   EXPECT_EQ(error.with("another").told(), "a.toml:1:2: wrong\n   1 | x\n     |  ^\n  hint: another");
   EXPECT_EQ(InputError("wrong", "a hint").told(), "wrong\n  hint: a hint");
+  // Of a name of megabytes both ends of the message stay, cut between characters.
+  std::string name;
+  for (int k = 0; k < 500000; ++k) name += "ä";
+  const std::string told = InputError("unknown key '" + name + "' here").told();
+  EXPECT_LT(told.size(), 2000U);
+  EXPECT_EQ(told.find("unknown key 'ä"), 0U);
+  EXPECT_NE(told.find("ä ... (998222 bytes more) ... ä"), std::string::npos) << told;
+  EXPECT_TRUE(told.ends_with("ä' here"));
 }
 
 }  // namespace

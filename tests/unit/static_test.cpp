@@ -195,7 +195,7 @@ TEST(Static, IsForTheEngineThatRelaxes) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "bar.toml: static loading is not for the golden engine\n  hint: 'cuboct run' with the reference "
+        "bar.toml:36:1: static loading is not for the golden engine\n  hint: 'cuboct run' with the reference "
         "engine relaxes; 'static = false' lets the body move");
   }
   EXPECT_THROW(static_kind(scene, plan, {.precision = Precision::float32}), InputError);
