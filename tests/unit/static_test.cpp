@@ -193,10 +193,9 @@ TEST(Static, IsForTheEngineThatRelaxes) {
     record(scene, golden_kind(scene, plan), request);
     FAIL() << "golden ran it";
   } catch (const InputError& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "bar.toml:36:1: static loading is not for the golden engine\n  hint: 'cuboct run' with the reference "
-        "engine relaxes; 'static = false' lets the body move");
+    EXPECT_STREQ(error.what(),
+                 "bar.toml:36:1: static loading is not for the golden engine\n  hint: the reference engine "
+                 "relaxes; 'static = false' lets the body move");
   }
   EXPECT_THROW(static_kind(scene, plan, {.precision = Precision::float32}), InputError);
   EXPECT_THROW(static_kind(scene, plan, {.integrator = Integrator::velocity_verlet}), InputError);
