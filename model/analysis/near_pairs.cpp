@@ -113,7 +113,10 @@ void NearPairs::list() {
     auto from = found[p].begin();
     for (size_t slot = begin_of(p); slot < begin_of(p + 1); ++slot) {
       const uint32_t i = order[slot];
-      std::copy_n(from, count[i], other_.begin() + static_cast<ptrdiff_t>(first_[i]));
+      const auto others = other_.begin() + static_cast<ptrdiff_t>(first_[i]);
+      std::copy_n(from, count[i], others);
+      // The cells' order is that of this state; sums must be those of a run that lists at another.
+      std::sort(others, others + static_cast<ptrdiff_t>(count[i]));
       from += count[i];
     }
   });

@@ -14,7 +14,8 @@ namespace cuboct {
 
 class NearPairs {
  public:
-  // References outlive it. `threads`: 0 for one per core; no pair and no order depends on them.
+  // References outlive it. `threads`: 0 for one per core. The order of pairs depends neither on them
+  // nor on the states taken before.
   NearPairs(const FixedRule& rule, const Lattice& lattice, int threads);
 
   // Takes the places of a state, and makes a new list where the old one may lack a pair inside the cutoff.
@@ -26,7 +27,8 @@ class NearPairs {
   size_t blocks() const { return (x_.size() + kBlock - 1) / kBlock; }
   size_t first_of(size_t block) const { return std::min(x_.size(), block * kBlock); }
   // Calls see(i, j, x_j - x_i in P+G fractional bits, of the nearest image) for the block's particles i in
-  // their order, and for each the listed j > i in theirs: the pairs inside the cutoff, and some beyond.
+  // order of their ids, and for each the listed j > i in theirs: the pairs inside the cutoff, and some
+  // beyond.
   template <typename See>
   void for_each(size_t block, const See& see) const {
     for (size_t i = first_of(block); i < first_of(block + 1); ++i)
