@@ -242,8 +242,11 @@ class Exploration {
     if (!options_.emit.empty()) {
       const Setup setup = setup_of(c);
       const CountedCycles counted{f.counts->steps, f.counts->cycles, f.counts->most};
-      emit_rtl(setup.plan, setup.initial, options_.emit,
-               {.vector_steps = 8, .arch = head + c.arch_text, .counted = counted});
+      Emission emission;
+      emission.vector_steps = 8;
+      emission.arch = head + c.arch_text;
+      emission.counted = counted;
+      emit_rtl(setup.plan, setup.initial, options_.emit, emission);
       say_emitted(options_.emit, setup.plan, counted, answer_);
     }
     return machine_json(study_, f);
