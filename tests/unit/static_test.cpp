@@ -41,7 +41,7 @@ double counter(const Recorded& run, const std::string& name) {
 }
 
 // A bar whose end is pulled by 4e-4 of its length in each of four load steps.
-std::string bar(const std::string& run) {
+std::string loaded_bar(const std::string& run) {
   const std::string left = "region = { shape = \"half_space\", point = [-3.4, 0, 0], normal = \"x\" }\n",
                     right = "region = { shape = \"half_space\", point = [3.4, 0, 0], normal = \"-x\" }\n";
   return "units = \"reduced\"\nmass = 2.0\n[packing]\npitch = 1.0\naxes = [[1, 1, 0], [-1, 1, 0]]\n"
@@ -83,7 +83,7 @@ double linear_force(Scene scene, double displacement) {
 
 TEST(Static, ABarInTensionHasTheForceOfTheLinearEquations) {
   const Scene scene =
-      parse_scene(bar("steps = 1100\nstatic = { load_steps = 4, tolerance = 1e-6 }\n"), "bar");
+      parse_scene(loaded_bar("steps = 1100\nstatic = { load_steps = 4, tolerance = 1e-6 }\n"), "bar");
   ASSERT_TRUE(scene.loading);
   EXPECT_EQ(scene.loading->every, 275U);
   EXPECT_EQ(scene.probe_every, 275U);
@@ -108,9 +108,9 @@ TEST(Static, ABarInTensionHasTheForceOfTheLinearEquations) {
 TEST(Static, EqualLoadStepsBeginWhereTheLastOneWent) {
   const auto evaluations = [](const char* count) {
     return counter(
-        run_static(parse_scene(
-            bar("steps = 1200\nstatic = { tolerance = 1e-3, load_steps = " + std::string(count) + " }\n"),
-            "bar")),
+        run_static(parse_scene(loaded_bar("steps = 1200\nstatic = { tolerance = 1e-3, load_steps = " +
+                                          std::string(count) + " }\n"),
+                               "bar")),
         "force_evaluations");
   };
   const double one = evaluations("1"), ten = evaluations("10");
@@ -156,7 +156,7 @@ TEST(Static, WithoutLoadStepZeroIsTheBodyAsItBegins) {
 
 // A sleep is never shorter than it says.
 TEST(Static, HostTimeCountsHowTheBodyCameToRest) {
-  const Scene scene = parse_scene(bar("steps = 100\nstatic = { load_steps = 1 }\n"), "bar");
+  const Scene scene = parse_scene(loaded_bar("steps = 100\nstatic = { load_steps = 1 }\n"), "bar");
   EngineKind kind = static_kind(scene, scene.body, 1, 1);
   constexpr std::chrono::milliseconds kSleep{20};
   kind.make = [&scene, kSleep](CheckpointReader*, bool) {
@@ -185,7 +185,7 @@ TEST(Static, ABodyThatFallsFindsNoRest) {
 }
 
 TEST(Static, IsForTheEngineThatRelaxes) {
-  const Scene scene = parse_scene(bar("steps = 100\nstatic = true\n"), "bar.toml");
+  const Scene scene = parse_scene(loaded_bar("steps = 100\nstatic = true\n"), "bar.toml");
   const Plan plan = plan_of(scene, {});
   RunRequest request;
   request.steps = 1;
@@ -203,7 +203,7 @@ TEST(Static, IsForTheEngineThatRelaxes) {
 
 TEST(Static, IsReadAndSwitchedOffByAStage) {
   const std::string stages =
-      bar("steps = 100\nprobe_every = 7\nstatic = { load_steps = 10 }\n") +
+      loaded_bar("steps = 100\nprobe_every = 7\nstatic = { load_steps = 10 }\n") +
       "[[stage]]\nname = \"load\"\n[[stage]]\nname = \"move\"\nstatic = false\nsteps = 33\n";
   const Scene load = parse_scene(stages, "bar.toml", {.begins = true, .stage = "load"});
   ASSERT_TRUE(load.loading);
@@ -217,7 +217,7 @@ TEST(Static, IsReadAndSwitchedOffByAStage) {
                                       {"static = { tolerance = 0.0 }", "'tolerance' must be"},
                                       {"static = 4", "'static' must be true or false"}}) {
     try {
-      parse_scene(bar("steps = 100\n" + std::string(keys) + "\n"), "bar.toml");
+      parse_scene(loaded_bar("steps = 100\n" + std::string(keys) + "\n"), "bar.toml");
       ADD_FAILURE() << keys;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
@@ -229,7 +229,7 @@ TEST(Static, IsReadAndSwitchedOffByAStage) {
 // The elastic law ends 0.414 pitches beyond the pitch; 0.207 are moved in 2070 steps of dt.
 TEST(Static, ALoadStepThatWouldTearBondsIsAnError) {
   const auto pulled = [](int steps) {
-    return parse_scene(bar(fmt::format("steps = {}\nstatic = {{ load_steps = 1 }}\n", steps)), "bar");
+    return parse_scene(loaded_bar(fmt::format("steps = {}\nstatic = {{ load_steps = 1 }}\n", steps)), "bar");
   };
   pulled(20700);
   try {
