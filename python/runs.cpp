@@ -64,7 +64,6 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const RunAsked asked = for_scene(given, scene);
-  if (!asked.leave.empty()) refuse_bonds(scene);
   WholeRun result;
   result.dt = scene.rule.dt;
   RunRequest request;

@@ -237,7 +237,6 @@ std::vector<Curve> Simulation::curves() {
 
 void Simulation::leave(const std::string& directory) {
   const std::lock_guard lock(mutex_);
-  refuse_bonds(scene_);
   const Plan& plan = setup_.plan;
   TraceHead head{scene_, nullptr, nullptr, plan.origin, plan.arch.text};
   if (!real_) head.rule = &plan.rule, head.lattice = &plan.lattice;
@@ -246,6 +245,7 @@ void Simulation::leave(const std::string& directory) {
   rest.plan_hash = plan.hash;
   rest.nodes = plan.nodes();
   rest.steps_done = now();
+  if (const Body* body = engine_->saved_body(); body && body->bonds) rest.bonds = body->bonds->kept;
   leave_state(directory, head, engine_->frame(false), rest);
 }
 
@@ -290,7 +290,6 @@ void Simulation::change(const std::string& call, const std::function<void(Rule&)
         fmt::format("the {} engine is a program that reads the scene: nothing of it can change on the way",
                     engine_name_),
         "golden and lattice take changes, and have the same bits");
-  refuse_bonds(scene_);
   Scene changed = scene_;
   edit(changed.rule);
   const auto of_call = [&](auto check) {

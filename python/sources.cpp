@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "python/sources.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 
 #include "hw/scene_engine.h"
-#include "model/base/error.h"
 #include "model/base/output.h"
-#include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
 #include "model/scene/config.h"
 
@@ -44,13 +40,6 @@ std::vector<StageName> stages_of(const Sources& sources) {
 
 void read_stage(const Sources& sources) {
   parse_scene(sources.scene, sources.scene_path, {.begins = true, .stage = stage_of(sources)});
-}
-
-void refuse_bonds(const Scene& scene) {
-  const RoundsRule* rule = rounds_of(scene.rule);
-  if (rule != nullptr && rule->declaration().bonds == BondRange::reference)
-    throw InputError(fmt::format("bonds of the rule '{}' keep what they went through, and would lose it here",
-                                 rule->declaration().name));
 }
 
 Input write_sources(const Sources& sources, const Scratch& scratch) {

@@ -28,9 +28,6 @@ void read_stage(const Sources& sources);
 // within count from there.
 Input write_sources(const Sources& sources, const Scratch& scratch);
 
-// InputError where another run would begin without what the bonds of a rule of rounds went through.
-void refuse_bonds(const Scene& scene);
-
 // Ctrl-C ended what was asked for.
 class Interrupted : public std::exception {};
 

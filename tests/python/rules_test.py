@@ -67,15 +67,18 @@ class Rounds(unittest.TestCase):
         facts = bar().check()
         self.assertEqual((facts["engine"], facts["cells"], facts["nodes"]), ("reference", None, None))
 
-    def test_bonds_are_not_lost(self):
-        simulation = cuboct.Simulation(bar())
-        for call in (
-            lambda: simulation.set_velocity("r", [200, 0, 0]),
-            lambda: cuboct.run(torn(bar())),
-            lambda: cuboct.Simulation(torn(bar()), stage="rest", start=simulation),
-        ):
-            with self.assertRaisesRegex(cuboct.InputError, "keep what they went through"):
-                call()
+    def test_a_change_keeps_the_bonds(self):
+        plain, changed = cuboct.Simulation(bar()), cuboct.Simulation(bar())
+        plain.run()
+        changed.step(40)
+        before = changed.fields["damage"]
+        self.assertGreater(before.max(), 0)
+        changed.set_velocity("r", [200, 0, 0])
+        self.assertEqual(changed.steps, 40)
+        changed.run()
+        same(self, changed, plain)
+        self.assertEqual(changed.fields["damage"].tolist(), plain.fields["damage"].tolist())
+        self.assertTrue((changed.fields["damage"] >= before).all())
 
     def test_engines_of_pairs_refuse(self):
         for call in (
@@ -197,6 +200,12 @@ class Stages(unittest.TestCase):
         second.run()
         same(self, second, run)
         return run, first, second
+
+    def test_bonds_go_on(self):
+        run, first, second = self.compare(torn(bar()))
+        self.assertGreater(first.fields["damage"].max(), 0)
+        self.assertTrue((second.fields["damage"] >= first.fields["damage"]).all())
+        self.assertGreaterEqual(run.counters["mean_damage"], run.stages["tear"].counters["mean_damage"])
 
     def test_a_fixed_rule(self):
         scene = pulled()
