@@ -156,11 +156,11 @@ TEST(Static, OtherEnginesAndCommandsRefuse) {
     EXPECT_EQ(answer.code, 2) << answer.out;
     EXPECT_EQ(answer.err, text);
   };
-  const std::string excerpt = "\n  34 | static = true\n     | ^";
+  const std::string excerpt = "\n  34 | static = true\n     |          ^";
   expect_refusal({"run", scene, "--engine", "golden", "--quiet"},
-                 scene + ":34:1: static loading is not for the golden engine" + excerpt + hint);
+                 scene + ":34:10: static loading is not for the golden engine" + excerpt + hint);
   expect_refusal({"emit", scene, "--out", bench.path("rtl")},
-                 scene + ":34:1: static loading is not for hardware" + excerpt + hint);
+                 scene + ":34:10: static loading is not for hardware" + excerpt + hint);
   expect_refusal({"run", scene, "--precision", "float", "--quiet"},
                  "static loading is in doubles: --precision float is not for it\n");
 }

@@ -194,7 +194,7 @@ TEST(Static, IsForTheEngineThatRelaxes) {
     FAIL() << "golden ran it";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "bar.toml:36:1: static loading is not for the golden engine\n  hint: the reference engine "
+                 "bar.toml:36:10: static loading is not for the golden engine\n  hint: the reference engine "
                  "relaxes; 'static = false' lets the body move");
   }
   EXPECT_THROW(static_kind(scene, plan, {.precision = Precision::float32}), InputError);

@@ -269,6 +269,7 @@ TEST_F(TraceFile, HoldsWhatFits) {
   TraceWriter out(path("t.h5"), path("part.h5"));
   trace.frames.clear();
   trace.bodies.clear();
+  trace.bonds.reset();
   {
     const FileLimit limit(6 << 20);
     for (uint64_t step = 0; step < 20; ++step) try {
