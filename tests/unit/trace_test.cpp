@@ -269,7 +269,6 @@ TEST_F(TraceFile, HoldsWhatFits) {
   TraceWriter out(path("t.h5"), path("part.h5"));
   trace.frames.clear();
   trace.bodies.clear();
-  trace.bonds.reset();  // they are of the last of them
   trace.bonds.reset();
   {
     const FileLimit limit(6 << 20);
