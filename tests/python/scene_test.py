@@ -26,7 +26,7 @@ class Scenes(unittest.TestCase):
             read = cuboct.Scene.load(path)
             with open(path, encoding="utf-8") as file:
                 self.assertEqual(read.toml(), file.read())
-            self.assert_same(tomllib.loads(cuboct.Scene(read).toml()), read)
+            self.assert_same(tomllib.loads(cuboct.Scene(dict(read)).toml()), read)
 
     def test_texts_and_names(self):
         awkward = {
