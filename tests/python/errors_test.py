@@ -9,7 +9,7 @@ import sys
 import tempfile
 import unittest
 
-from support import command, failure, main, scene_file
+from support import PROGRAMS, command, failure, main, scene_file
 
 import cuboct
 
@@ -118,6 +118,7 @@ class Errors(unittest.TestCase):
         self.assertIn("is no character", self.refused(cuboct.Scene.parse, 'title = "\ud800"').message)
         self.assertIn("is no character", self.refused(cuboct.run, cuboct.Scene(title="\ud800")).message)
 
+    @unittest.skipUnless(os.path.exists(os.path.join(PROGRAMS, "cuboct-mesh.so")), "built without meshes")
     def test_paths_in_a_scene_count_from_its_file(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "a.toml")
