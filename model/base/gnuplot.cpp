@@ -15,7 +15,7 @@ void run_gnuplot(const Scratch& scratch, const std::string& script) {
   int code = 0;
   try {
     // Scripts are UTF-8, which gnuplot only takes without complaint where the locale is too.
-    code = Process("gnuplot", {"-d", scratch.path("script.gp")}, false, {}, {"LC_ALL=C.UTF-8"}).wait();
+    code = Process("gnuplot", {"-d", scratch.path("script.gp")}, true, {}, {"LC_ALL=C.UTF-8"}).finish();
   } catch (const InputError& error) {
     throw InputError(error.what(), "install gnuplot-nox");
   }

@@ -89,6 +89,8 @@ int start(const Child& child, pid_t& pid) {
   return failed;
 }
 
+int exit_code(int status) { return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status); }
+
 }  // namespace
 
 Process::Process(const std::string& program, const std::vector<std::string>& arguments, bool apart,
@@ -157,7 +159,15 @@ int Process::wait(const std::function<bool()>& begun, const std::function<bool()
   }
   if (found < 0) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
   pid_ = -1;
-  return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+  return exit_code(status);
+}
+
+int Process::finish() {
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0)
+    if (errno != EINTR) throw std::runtime_error(fmt::format("waitpid: {}", std::strerror(errno)));
+  pid_ = -1;
+  return exit_code(status);
 }
 
 void end_with_starter() {

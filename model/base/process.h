@@ -34,6 +34,9 @@ class Process {
   // called every 100 ms, and again at once where it had something to do; what it throws leaves the program
   // running until the end of this object.
   int wait(const std::function<bool()>& begun = {}, const std::function<bool()>& meanwhile = {});
+  // The same of a program that an interrupt of ours does not end: what it makes belongs to the end of an
+  // interrupted run, such as its pictures.
+  int finish();
 
  private:
   pid_t pid_;

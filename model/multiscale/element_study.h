@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "model/bond_order/tersoff_terms.h"
-#include "model/contract/places.h"
 #include "model/multiscale/element_body.h"
 #include "model/multiscale/shell_springs.h"
 #include "model/multiscale/wave.h"
+#include "model/scene/config.h"
 
 namespace cuboct {
 

@@ -250,7 +250,7 @@ TEST(Command, TellsAFileOfTheRightKindWhatItLacks) {
   const Bench bench(false);
   const std::string path = bench.path("scene.toml");
   std::ofstream(path) << "mass = \"1 g\"\n[sweep]\n[law]\nkind = \"elastic\"\n";
-  EXPECT_NE(bench.cuboct({"check", path}).err.find("missing key "), std::string::npos);
+  EXPECT_NE(bench.cuboct({"check", path}).err.find("the law 'elastic' needs the pitch"), std::string::npos);
   std::ofstream(path) << "title = \"nothing\"\n";
   EXPECT_NE(bench.cuboct({"check", path}).err.find("missing key 'law'"), std::string::npos);
 }
