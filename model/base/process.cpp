@@ -203,9 +203,10 @@ bool in_path(const std::string& program) {
 Scratch::Scratch() {
   const char* asked = std::getenv("TMPDIR");
   const bool own = asked == nullptr || *asked == 0;
-  std::string name = (std::filesystem::path(own ? "/tmp" : asked) / "cuboct-XXXXXX").string();
+  const std::filesystem::path parent(own ? "/tmp" : asked);
+  std::string name = (parent / "cuboct-XXXXXX").string();
   if (!mkdtemp(name.data()))
-    throw InputError(fmt::format("cannot make the directory {}: {}", name, std::strerror(errno)),
+    throw InputError(fmt::format("cannot make a directory in {}: {}", parent.string(), std::strerror(errno)),
                      own ? "TMPDIR names another place for files that go with the program"
                          : "TMPDIR says so: it has to name a directory in which you may write");
   directory_ = name;

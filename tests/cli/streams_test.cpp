@@ -50,17 +50,22 @@ std::vector<std::string> closed_streams() {
 }
 
 TEST_F(StandardStreams, ClosedOnesLeaveTheRunWhole) {
-  ASSERT_EQ(sh(fmt::format("$cuboct run {} --steps 3 --quiet --out $dir >/dev/null", kStreamsScene)).code, 0);
-  const Trace whole = read_trace(bench_.path("dir/trace.h5"));
-  for (const std::string& streams : closed_streams())
-    for (const char* engine : {"lattice", "systemc"}) {
+  for (const char* engine : {"lattice", "systemc"}) {
+    const auto run = [&](const std::string& streams) {
+      EXPECT_EQ(sh(fmt::format("$cuboct run {} --engine {} --steps 3 --quiet --force --out $dir{}",
+                               kStreamsScene, engine, streams))
+                    .code,
+                0);
+      return read_trace(bench_.path("dir/trace.h5")).state_hash;
+    };
+    const std::vector<uint64_t> whole = run(" >/dev/null");
+    ASSERT_GT(whole.size(), 1u);
+    for (const std::string& streams : closed_streams()) {
       SCOPED_TRACE(engine + streams);
-      const Answer answer =
-          sh(fmt::format("$cuboct run {} --engine {} --steps 3 --quiet --force --out $dir{}", kStreamsScene,
-                         engine, streams));
-      EXPECT_EQ(answer.code, 0);
-      EXPECT_EQ(read_trace(bench_.path("dir/trace.h5")).state_hash, whole.state_hash);
+      fs::remove_all(bench_.path("dir"));
+      EXPECT_EQ(run(streams), whole);
     }
+  }
 }
 
 // The engines' programs alone, as others may start them.
@@ -144,12 +149,12 @@ TEST_F(StandardStreams, AFullOutputIsToldByEachCommand) {
       SCOPED_TRACE(command + json);
       const Answer answer = sh("$cuboct " + command + json + " >/dev/full");
       EXPECT_EQ(answer.code, 1);
-      if (*json == 0 || command.ends_with("--help"))
+      if (*json == 0)
         EXPECT_TRUE(answer.err.ends_with(std::string(kOutputFull) + "\n")) << answer.err;
       else
         EXPECT_EQ(nlohmann::json::parse(answer.err)["error"]["message"], kOutputFull);
       EXPECT_EQ(sh("$cuboct " + command + json + " | :; exit ${PIPESTATUS[0]}").code,
-                command.starts_with("new ") || command.starts_with("emit") ? 2 : 0);
+                command.starts_with("new /") ? 2 : 0);  // it is there already
     }
 }
 
@@ -164,13 +169,13 @@ TEST_F(StandardStreams, ATemporaryDirectoryThatIsNotThereIsNamed) {
   const Answer answer = sh(fmt::format("TMPDIR=/nowhere $cuboct run {} --steps 3", kStreamsScene));
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,
-            "cannot make the directory /nowhere/cuboct-XXXXXX: No such file or directory\n"
+            "cannot make a directory in /nowhere: No such file or directory\n"
             "  hint: TMPDIR says so: it has to name a directory in which you may write\n");
 }
 
 TEST_F(StandardStreams, ARefusalOfTheFileSystemIsOneOfInput) {
   const std::string name(300, 'a');
-  for (const std::string command : {"$cuboct picture ", "$cuboct report ", "$cuboct synth "}) {
+  for (const std::string command : {"$cuboct picture ", "$cuboct report ", "$cuboct synth --target up5k "}) {
     const Answer answer = sh(command + name);
     EXPECT_EQ(answer.code, 2);
     EXPECT_NE(answer.err.find(": File name too long\n"), std::string::npos) << answer.err;
