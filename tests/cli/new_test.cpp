@@ -139,8 +139,8 @@ TEST_F(Template, TensionHasTheModulusThatIsGiven) {
   EXPECT_LT(to, 0.04);
   EXPECT_NEAR(told("tension.strength"), 192e6, 3e6);
   EXPECT_NEAR(told("tension.strain"), 0.09, 0.001);
-  EXPECT_EQ(summary_["tension.yield_strain"]["note"], "the stress still rises at the end");
-  EXPECT_TRUE(summary_["tension.yield_strain"]["value"].is_null());
+  // The stress is level from a strain of 0.087 on: it rises by less than 0.2 % up to the end.
+  EXPECT_GT(told("tension.yield_strain"), 0.085);
   EXPECT_TRUE(summary_["tension.strain_at_break"]["value"].is_null());
 }
 
