@@ -66,7 +66,7 @@ packing = { pitch = "1 mm" }
 geometry = { shape = "box", min = "[0, 0, 0] mm", max = "[6, 6, 3] mm" }
 [[velocity]]
 region = { shape = "half_space", point = "[0, 3.1, 0] mm", normal = "y" }
-uniform = "[0, 40, 0] m/s"
+uniform = "[0, 3, 0] m/s"  # tears some bonds, and leaves some particles whole
 [rule]
 kind = "lps"
 youngs_modulus = "72 GPa"
