@@ -101,18 +101,18 @@ std::vector<Vec3> best_of_grid(const std::vector<Bond>& bonds, const Mat3& recip
 
 }  // namespace
 
-void check_neighbours(double pitch, double cutoff) {
+void check_neighbours(double pitch, double cutoff, double most) {
   const double count = 4 * std::numbers::pi / 3 * std::pow(cutoff, 3) / fcc_volume(pitch);
-  if (count > kMostNeighbours)
+  if (count > most)
     throw InputError(
         fmt::format("a cutoff of {:.4g} m reaches over some {:.3g} neighbours at a pitch of {:.4g} m: "
                     "at most {:.3g} are summed",
-                    cutoff, count, pitch, kMostNeighbours),
+                    cutoff, count, pitch, most),
         "a shorter cutoff, or a larger pitch");
 }
 
 std::vector<Vec3> fcc_neighbours(double pitch, double cutoff) {
-  check_neighbours(pitch, cutoff);
+  check_neighbours(pitch, cutoff, kMostOnce);
   const double half_edge = pitch / std::numbers::sqrt2;  // of the cubic cell
   const int n = static_cast<int>(std::ceil(cutoff / half_edge));
   std::vector<Vec3> neighbours;

@@ -19,8 +19,10 @@ inline constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2
 
 // Of a site, at most: sums over more take seconds each, and a scene makes hundreds.
 inline constexpr double kMostNeighbours = 1e5;
+// Of a single sum, at most: 24 MB of neighbours.
+inline constexpr double kMostOnce = 1e6;
 // InputError where the ball of that radius holds more.
-void check_neighbours(double pitch, double cutoff);
+void check_neighbours(double pitch, double cutoff, double most = kMostNeighbours);
 
 // The neighbours of a site nearer than `cutoff`, in cubic axes, without the site itself; if v is one, so is
 // -v. InputError where there are too many.

@@ -30,7 +30,8 @@ TEST(FccNeighbours, HaveTheShellsOfTheTextbook) {
 // A ball of 25 pitches holds 4 pi/3 sqrt(2) 25^3 = 92,561 particles, one of 26 holds 104,117.
 TEST(FccNeighbours, AreABoundedNumber) {
   EXPECT_NEAR(static_cast<double>(fcc_neighbours(0.1, 2.5).size()), 92561, 300);  // its surface is rough
-  EXPECT_THROW(fcc_neighbours(0.1, 2.6), InputError);
+  EXPECT_NO_THROW(check_neighbours(0.1, 2.5));
+  EXPECT_THROW(check_neighbours(0.1, 2.6), InputError);
   EXPECT_THROW(fcc_neighbours(1e-9, 1), InputError);
 }
 
