@@ -280,10 +280,12 @@ ElementEffort finest(const CompareInput& compare) {
 
 namespace {
 
-ElementStudy element_study_of(const ConfigTable& root, const std::string& path,
+// `hash`: of the file's text; the mesh's and the effort's join it.
+ElementStudy element_study_of(const ConfigTable& root, const std::string& path, uint64_t hash,
                               const std::optional<ElementEffort>& effort) {
   ElementStudy out;
   out.path = path;
+  out.hash = hash;
   out.title = root.string_or("title", "");
   const auto table = [&](const char* key) { return root.at(key).table(); };
   out.material = read_material(table("material"));
@@ -310,11 +312,9 @@ ElementStudy element_study_of(const ConfigTable& root, const std::string& path,
 
 ElementStudy read_element_study(const std::string& path, const std::optional<ElementEffort>& effort) {
   const std::string text = read_config_text(path);
-  ElementStudy study = read_kind(FileKind::element_study, text, path, [&](const ConfigTable& root) {
-    return element_study_of(root, path, effort);
+  return read_kind(FileKind::element_study, text, path, [&](const ConfigTable& root) {
+    return element_study_of(root, path, hash_of(text), effort);
   });
-  study.hash = hash_of(text);
-  return study;
 }
 
 std::shared_ptr<const SampleMaterial> material_of(const ElementStudy& study) {
