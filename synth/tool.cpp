@@ -28,9 +28,8 @@ const std::map<std::string, std::string> kPackages = {
 // an error.
 int run_apart(const std::string& program, const std::vector<std::string>& arguments, const Streams& streams) {
   const Scratch scratch;
-  std::vector<std::string> words{"-u", "HOME", "TMPDIR=" + scratch.path("."), program};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  return Process("env", words, false, streams).wait();
+  const std::string here = scratch.path(".");
+  return Process(program, arguments, false, streams, {"HOME=" + here, "TMPDIR=" + here}).wait();
 }
 
 }  // namespace

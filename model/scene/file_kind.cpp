@@ -42,7 +42,7 @@ const std::vector<Kind>& kinds() {
        "a study of settings",
        "'cuboct explore {}' takes it",
        {{"scene"}, kOfSettings},
-       {"target"}},
+       {"target", "machines", "evolve"}},
       {FileKind::learn_study,
        "a study of a learned kernel",
        "'cuboct learn {}' takes it",

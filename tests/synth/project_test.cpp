@@ -149,7 +149,7 @@ TEST_F(Refuse, ABoardThatIsNotThere) {
   Request r = request();
   r.unit = "board";
   EXPECT_EQ(refusal(r), "DIR: has no board/\n  hint: cuboct emit SCENE --out DIR --board BOARD writes one");
-  EXPECT_TRUE(fs::is_empty(dir_ + "/synth/up5k"));
+  EXPECT_FALSE(fs::exists(dir_ + "/synth"));
 }
 
 TEST_F(Refuse, MissingToolsWithTheirPackages) {
@@ -164,7 +164,7 @@ TEST_F(Refuse, MissingToolsWithTheirPackages) {
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(yosys, "yosys is not in PATH\n  hint: apt-get install yosys");
   EXPECT_EQ(sta, "sta is not in PATH\n  hint: apt-get install opensta");
-  EXPECT_TRUE(fs::is_empty(dir_ + "/synth/up5k"));
+  EXPECT_FALSE(fs::exists(dir_ + "/synth"));
 }
 
 TEST_F(Refuse, AToolWithoutItsData) {

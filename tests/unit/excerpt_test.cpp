@@ -94,7 +94,7 @@ TEST(Excerpt, StandsBetweenMessageAndHint) {
   const std::string told = InputError("unknown key '" + name + "' here").told();
   EXPECT_LT(told.size(), 2000U);
   EXPECT_EQ(told.find("unknown key 'ä"), 0U);
-  EXPECT_NE(told.find("ä ... (998222 bytes more) ... ä"), std::string::npos) << told;
+  EXPECT_NE(told.find("ä ... (998220 bytes more) ... ä"), std::string::npos) << told;
   EXPECT_TRUE(told.ends_with("ä' here"));
 }
 
