@@ -5,6 +5,7 @@ import random
 
 import meshes
 import mutate
+from shop import KEPT
 from sound import (BAR, CURVE, FIT, GMSH, LEARN, LONG_RUN, MACHINES, MESH_SCENE, MULTISCALE, POTENTIAL_FIT, SMALL_SCENE, STUDIES, STUDY,
                    TERSOFF_SCENE, WAVE)
 from stores import rehashed, spoilt_database
@@ -197,8 +198,6 @@ class Kinds:
     def results(self, rng):
         """Directories of studies, and the same command again."""
         which = rng.choice(["explore"] * 3 + ["search", "machines", "fit", "potential_fit", "multiscale", "learn", "pitch"])
-        names = {"explore": "results.db", "search": "search.db", "machines": "machines.jsonl", "fit": "evaluations.jsonl", "potential_fit": "starts.jsonl",
-                 "multiscale": "progress", "learn": "samples.jsonl", "pitch": "runs.jsonl"}
         inputs, command = STUDIES[which]
         if which == "explore" and rng.random() < 0.4:
             command = command[:-1] + ["other", "--add", "in/results.db"]
@@ -206,10 +205,10 @@ class Kinds:
             data, taken = spoilt_database(self.shop[which]["results.db"], rng)
             return Case("", 0, inputs | {"in/results.db": data}, command, taken + ["in/results.db"])
         held = self.shop[which]
-        if names[which].endswith(".db"):
-            data, taken = spoilt_database(held[names[which]], rng)
-            return Case("", 0, inputs | {f"out/{n}": d for n, d in held.items()} | {"out/" + names[which]: data}, command, taken + [names[which]])
-        return self.from_shop(rng, which, "out", [names[which]], ("progress",), inputs, [command], mutate.TEXT)
+        if KEPT[which].endswith(".db"):
+            data, taken = spoilt_database(held[KEPT[which]], rng)
+            return Case("", 0, inputs | {f"out/{n}": d for n, d in held.items()} | {"out/" + KEPT[which]: data}, command, taken + [KEPT[which]])
+        return self.from_shop(rng, which, "out", [KEPT[which]], ("progress",), inputs, [command], mutate.TEXT)
 
     def liberty(self, rng):
         """Cells of a library; the netlist of one small block."""

@@ -29,6 +29,11 @@ LIBERTY = """library(small) {
 """
 
 
+# Where a study keeps what it measured.
+KEPT = {"explore": "results.db", "search": "search.db", "machines": "machines.jsonl", "fit": "evaluations.jsonl", "potential_fit": "starts.jsonl",
+        "multiscale": "progress", "learn": "samples.jsonl", "pitch": "runs.jsonl"}
+
+
 class NoShop(Exception):
     pass
 
@@ -75,7 +80,10 @@ class Shop:
 
     def study(self, name):
         files, command = sound.STUDIES[name]
-        return self.made(name, files, command, (0, 1))
+        found = self.made(name, files, command, (0, 1))
+        if KEPT[name] not in found:
+            raise NoShop(f"{name}: no {KEPT[name]} among {', '.join(sorted(found)) or 'no files'}")
+        return found
 
     def item(self, name):
         scene = {"in/scene.toml": sound.SMALL_SCENE}

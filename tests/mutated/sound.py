@@ -94,7 +94,7 @@ region = "left"
 [[constraint]]
 name = "pulled"
 kind = "moved"
-velocity = "[1, 0, 0] m/s"
+velocity = "[0.25, 0, 0] m/s"
 region = "right"
 [[probe]]
 name = "tension"
