@@ -10,6 +10,7 @@
 
 #include "cli/answer.h"
 #include "cli/clock_option.h"
+#include "cli/estimate.h"
 #include "cli/machine_cycles.h"
 #include "cli/technologies.h"
 #include "model/base/interrupt.h"
@@ -129,6 +130,7 @@ int boards(const Options& options) {
   if (options.steps == uint64_t{0}) throw InputError("--steps: no step, no cycles", "--steps 20");
   const Loaded loaded = load(options.input);
   const Plan& plan = loaded.setup.plan;
+  check_held(loaded.scene, plan);
   if (plan.arch.boards.several())
     plan.arch.places.fail({"boards"}, "the machine is on several devices already",
                           "leave out [boards]: this command finds it");

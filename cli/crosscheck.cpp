@@ -11,6 +11,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/crosscheck_real.h"
+#include "cli/estimate.h"
 #include "cli/outputs.h"
 #include "cli/run_engines.h"
 #include "cli/stages.h"
@@ -217,6 +218,7 @@ struct Crossed {
 // `leave`: a directory for the last state; empty: none is asked for.
 Crossed cross_once(const Options& options, const std::string& leave) {
   const Loaded loaded = load_plan(options.input);
+  check_held(loaded.scene, loaded.setup.plan);
   const Scratch scratch;
   std::optional<DirectoryLock> lock;
   std::string directory = scratch.path("");

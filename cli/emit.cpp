@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/emit.h"
+#include "cli/estimate.h"
 #include "cli/machine_cycles.h"
 #include "cli/stages.h"
 #include "hw/rtl_emit.h"
@@ -56,6 +57,7 @@ Items emit_one(const Options& options) {
   const Loaded loaded = load(options.input);
   refuse_static(loaded.scene, "hardware");
   const Plan& plan = loaded.setup.plan;
+  check_held(loaded.scene, plan);
   std::optional<CountedCycles> counted;
   with_places(loaded.scene, plan.arch, [&] {
     check_emit_directory(options.out);

@@ -11,6 +11,7 @@
 #include "cli/clock_option.h"
 #include "cli/command.h"
 #include "cli/energy_text.h"
+#include "cli/estimate.h"
 #include "cli/machine_cycles.h"
 #include "cli/technologies.h"
 #include "hw/memory_traffic.h"
@@ -34,6 +35,7 @@ EnergyMachine machine_of(const Options& options, const std::string& arch, double
   input.arch = arch;
   const Loaded loaded = load(input);
   const Plan& plan = loaded.setup.plan;
+  check_held(loaded.scene, plan);
   constexpr uint64_t kMostWork = 20'000'000;  // particles times steps
   const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
   const auto run =

@@ -18,6 +18,9 @@
 namespace cuboct {
 namespace {
 
+// Keys that say how many particles and cells there are.
+const std::vector<std::string> kOfSize{"packing.pitch", "box.cells", "geometry", "particle"};
+
 constexpr double kProgram = 20e6;  // bytes, of a process before it has read anything
 
 struct Extent {
@@ -211,7 +214,7 @@ void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, cons
       scene.places.fail({"run.probe_every", "run.duration", "run.steps"},
                         fmt::format("{}, {} of it for curves", text, in_bytes(e.samples)),
                         "a larger probe_every" + anyway);
-    scene.places.fail({"packing.pitch", "box.cells", "geometry", "particle"}, text,
+    scene.places.fail(kOfSize, text,
                       (size.ranks > 1 ? std::string("fewer ranks, ") : std::string()) +
                           "a larger pitch or a smaller geometry" + anyway);
   }
@@ -230,6 +233,17 @@ void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, cons
   if (size.frame_every != scene.frame_every) throw InputError(text, hint + "; --anyway runs it all the same");
   scene.places.fail({"run.frame_every", "packing.pitch", "geometry", "box"}, text,
                     hint + "; --anyway runs it all the same");
+}
+
+void check_held(const Scene& scene, const Plan& plan) {
+  RunSize size;
+  size.hash_every = 0;
+  const double memory = estimate(scene, plan, size).memory, free = static_cast<double>(free_memory());
+  if (memory > free)
+    scene.places.fail(
+        kOfSize,
+        fmt::format("the machine takes about {} of memory: {} are free", in_bytes(memory), in_bytes(free)),
+        "a larger pitch or a smaller geometry");
 }
 
 void check_workers(int threads, int ranks, const Plan& plan) {

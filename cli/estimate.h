@@ -53,6 +53,10 @@ void check_lists(const Scene& scene, const RunSize& size, bool frames_given);
 // more disk: at the key or option that asks for most of it, with what would do.
 void check_fits(const Scene& scene, const RunSize& size, const Estimate& estimate, const std::string& out);
 
+// Throws InputError, at the key that asks for most, where the particles and cells of the machine take more
+// memory than is free: of commands that run it on the lattice engine for a few steps.
+void check_held(const Scene& scene, const Plan& plan);
+
 // Throws InputError where threads (0: not given) or ranks are more than the machine or the scene can use.
 void check_workers(int threads, int ranks, const Plan& plan);
 

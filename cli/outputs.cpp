@@ -13,6 +13,7 @@
 #include "model/analysis/measure.h"
 #include "model/base/error.h"
 #include "model/base/excerpt.h"
+#include "model/base/input_file.h"
 #include "model/base/output.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
@@ -143,7 +144,7 @@ void write_record(const std::string& directory, const RunRecord& record) {
 
 RunRecord read_record(const std::string& directory) {
   const std::string path = directory + "/run.toml";
-  if (!fs::exists(path))
+  if (!is_file(path))
     throw InputError(fmt::format("{} holds no run: no file run.toml", directory),
                      "'cuboct run SCENE --out DIR' makes one");
   try {
@@ -162,7 +163,7 @@ RunRecord read_record(const std::string& directory) {
                      table["reached"].value_or(false)};
     // A stranger's record may name what never ends, as a device.
     for (const auto& [key, file] : {std::pair{"scene", record.scene}, {"arch", record.arch}})
-      if ((key[0] == 's' || !file.empty()) && !fs::is_regular_file(file))
+      if ((key[0] == 's' || !file.empty()) && !is_file(file))
         throw InputError(fmt::format("{}: '{}' names no file: '{}'", path, key, file),
                          "paths count from the directory of run.toml");
     return record;

@@ -15,6 +15,7 @@
 #include "cli/load_any.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error_parts.h"
+#include "model/base/input_file.h"
 #include "model/base/output.h"
 #include "model/trace/frames.h"
 #include "model/trace/raster.h"
@@ -38,10 +39,10 @@ constexpr const char* kFiles[] = {"trace.h5",       "summary.json",  "plan.txt",
 
 void refuse_what_is_kept(const RecorderOptions& options) {
   const std::string& directory = options.directory;
-  const bool checkpoint = fs::exists(directory + "/checkpoint");
-  const bool unfinished = checkpoint || fs::exists(directory + "/checkpoint.journal") ||
-                          (fs::exists(directory + "/run.toml") && !is_over(read_record(directory)));
-  if (!fs::exists(directory + "/run.toml") && !unfinished && !options.force)
+  const bool checkpoint = is_file(directory + "/checkpoint");
+  const bool unfinished = checkpoint || is_file(directory + "/checkpoint.journal") ||
+                          (is_file(directory + "/run.toml") && !is_over(read_record(directory)));
+  if (!is_file(directory + "/run.toml") && !unfinished && !options.force)
     for (const char* name : kFiles)
       if (fs::exists(directory + "/" + name))
         throw InputError(fmt::format("{} holds a file {} that no run left", directory, name),

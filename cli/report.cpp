@@ -18,6 +18,7 @@
 #include "model/analysis/tension.h"
 #include "model/base/base64.h"
 #include "model/base/directory_lock.h"
+#include "model/base/input_file.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/quantity_text.h"
@@ -42,7 +43,7 @@ const Probe* first_tension(const Scene& scene, const Trace& trace) {
 // Where the colours end: as `cuboct picture` has it, of the same rasters; without them the frames tell.
 std::optional<double> colour_limit(const std::string& directory) {
   const std::string rasters = directory + "/rasters.h5";
-  if (!fs::exists(rasters)) return std::nullopt;
+  if (!is_file(rasters)) return std::nullopt;
   return usual_limit(read_rasters(rasters), Field::strain);
 }
 

@@ -10,6 +10,7 @@
 
 #include "cli/items.h"
 #include "cli/outputs.h"
+#include "model/base/input_file.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/run/start.h"
@@ -28,7 +29,7 @@ std::string directory_of(const StageRun& request, size_t k) {
 }
 
 std::optional<RunRecord> record_in(const std::string& directory) {
-  if (!fs::exists(directory + "/run.toml")) return std::nullopt;
+  if (!is_file(directory + "/run.toml")) return std::nullopt;
   return read_record(directory);
 }
 

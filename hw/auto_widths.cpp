@@ -26,7 +26,7 @@ constexpr int kKickUnits = 4;
 // The widest with which every product and sum of the rule is exact in doubles (emu/lattice/kernel_rule.cpp),
 // and a gain times a displacement in 64 bits.
 constexpr int kMostPosition = 30, kMostDifference = 24, kMostVelocity = 44, kMostVelocityWithGains = 43,
-              kMostRelativeBits = 25;
+              kMostRelativeBits = 25, kLeastRelativeFrac = 4;
 constexpr int kRelativeRange = -3;  // 1/8 of a cell per step
 // Units per 1/accuracy below which a run is warned of: half a unit of so many is five times the accuracy.
 constexpr double kFewest = 0.1;
@@ -141,6 +141,14 @@ class Chooser {
         fastest = std::max(fastest, (type.velocity - other.velocity).norm());
     const int range =
         std::max(kRelativeRange, fastest > 0 ? 1 - bits_for(fastest * dt / edge_) + 1 : kRelativeRange);
+    constexpr int kMostRange = kMostRelativeBits - 1 - kLeastRelativeFrac;
+    if (range > kMostRange)
+      throw InputError(
+          fmt::format("at {:.3g} m/s beside one another, particles part by {:.3g} cells in a step: at "
+                      "most {} are held",
+                      fastest, fastest * dt / edge_, 1 << kMostRange),
+          "slower particles, or a shorter step")
+          .about({"run.dt", "velocity", "mass"});
     // A width that the arch file sets keeps the range that it has with the least fraction, or this scene's.
     const int most =
         asked_.relative_velocity_bits != kAutomatic

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "model/base/input_file.h"
 #include "study/axes.h"
 
 namespace cuboct::study {
@@ -22,7 +23,7 @@ std::string beside(const std::string& study, const std::string& path) {
 // A file that is not there is told where the study names it.
 std::string file_named_by(const ConfigValue& value, const std::string& study) {
   std::string file = beside(study, value.string());
-  if (!fs::is_regular_file(file))
+  if (!is_file(file))
     value.fail(fmt::format("'{}' names no file: {}", value.key(), file),
                "paths count from the study's directory");
   return file;

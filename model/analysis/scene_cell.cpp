@@ -59,8 +59,8 @@ SceneCell cell_of(const Scene& scene, const std::string& material) {
     return out;
   }
   if (scene.pitch == 0)
-    throw InputError(fmt::format("{} has no cell that repeats", scene.path),
-                     "give it a [box] with periodic = \"xyz\", or a [packing]");
+    scene.places.fail({"particle", "crystal"}, "the scene has no cell that repeats",
+                      "give it a [box] with periodic = \"xyz\", or a [packing]");
   const uint8_t type = type_of(scene, material);
   Mat3 primitive;
   primitive << 0, 1, 1, 1, 0, 1, 1, 1, 0;

@@ -15,15 +15,15 @@ namespace {
 constexpr std::string_view kHint = "\n  hint: ";
 
 // A name from a file may have megabytes. Both ends of the message stay: what it is about, and what is wrong.
-std::string line_of(const std::string& text) {
+std::string line_of(const std::string& raw) {
   constexpr size_t kHead = 1200, kTail = 600;
-  if (text.size() <= kHead + kTail + 100) return line_text(text);
+  const std::string text = line_text(raw);
+  if (text.size() <= kHead + kTail + 100) return text;
   const auto begins = [&](size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0) != 0x80; };
   size_t head = kHead, tail = text.size() - kTail;
   while (head > 0 && !begins(head)) --head;
   while (tail < text.size() && !begins(tail)) ++tail;
-  return line_text(text.substr(0, head)) + fmt::format(" ... ({} bytes more) ... ", tail - head) +
-         line_text(text.substr(tail));
+  return text.substr(0, head) + fmt::format(" ... ({} bytes more) ... ", tail - head) + text.substr(tail);
 }
 
 std::string with_hint(const std::string& message, const std::string& hint) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 
 #include "model/base/error.h"
 #include "model/base/resources.h"
@@ -33,6 +34,11 @@ struct Descriptor {
 };
 
 }  // namespace
+
+bool is_file(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::is_regular_file(path, none);
+}
 
 std::string read_input(const std::string& path, uint64_t most) {
   // Without waiting for a pipe's writer; what a writer is to write is waited for.

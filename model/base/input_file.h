@@ -18,4 +18,7 @@ std::string read_input(const std::string& path, uint64_t most = kMostInput);
 // wait.
 void check_is_file(const std::string& path);
 
+// Whether there is such a file; no, too, where no file can have the name.
+bool is_file(const std::string& path);
+
 }  // namespace cuboct

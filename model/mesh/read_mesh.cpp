@@ -177,8 +177,12 @@ void read(const std::string& file, const std::string& result) {
   keep_only(importer, format);
   importer.SetIOHandler(new OneFile(file));  // the importer's from now on
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  if (importer.ReadFile(file, aiProcess_Triangulate) == nullptr)
-    throw std::runtime_error(importer.GetErrorString());
+  if (importer.ReadFile(file, aiProcess_Triangulate) == nullptr) {
+    // Assimp catches what its own memory throws.
+    const std::string why = importer.GetErrorString();
+    if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+    throw std::runtime_error(why);
+  }
   aiScene* const scene = importer.GetOrphanedScene();
   if (format == "dae") take_back(*scene->mRootNode, head);
   Triangles triangles;

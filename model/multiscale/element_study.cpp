@@ -20,7 +20,7 @@ namespace {
 constexpr double kElectronVolt = 1.602176634e-19;  // J
 constexpr double kAngstrom = 1e-10;                // m
 constexpr int64_t kMostCubes = 100, kMostSets = 1000;
-constexpr double kMostStrain = 0.2, kMostTolerance = 0.01;
+constexpr double kMostStrain = 0.2, kLeastStrain = 1e-9, kMostTolerance = 0.01;
 constexpr int kMostCells = 4, kMostRefine = 16;
 
 uint64_t hash_of(const std::string& text, Hash hash = {}) {
@@ -58,7 +58,13 @@ Tersoff read_potential(const ConfigTable& table, std::string& name) {
   table.not_both("file", "parameters");
   if (const auto file = table.find("file")) {
     name = file->string();
-    return read_tersoff(file->file(), {element});
+    const std::string path = file->file();
+    try {
+      return read_tersoff(path, {element});
+    } catch (const InputError& error) {
+      if (error.place() != nullptr) throw;
+      file->fail(first_line(error.what()));  // of the file as a whole
+    }
   }
   if (const auto parameters = table.table_at("parameters")) {
     name = "parameters of the study";
@@ -191,7 +197,10 @@ StretchInput read_stretch(const ConfigTable& table, const ElementMesh& mesh) {
   const ConfigValue strains = table.at("strains");
   out.strains = strains.numbers(quantity::number, Range::between(-kMostStrain, kMostStrain));
   if (out.strains.size() < 2) strains.fail("'strains' needs at least two, for modulus and Poisson's ratio");
-  if (std::ranges::count(out.strains, 0.0) > 0) strains.fail("a strain of 0 says nothing");
+  for (const double strain : out.strains)
+    if (std::abs(strain) < kLeastStrain)
+      strains.fail(fmt::format("a strain of {:g} is lost in the rounding of positions: {:g} at least", strain,
+                               kLeastStrain));
   table.done();
   return out;
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
 #include "model/scene/scene_parts.h"
@@ -72,7 +73,7 @@ bool keeps_anchor(const Scene& scene, const LeftState& left, size_t id) {
 
 void begin_at(Scene& scene, const std::string& directory) {
   const std::string path = directory + "/trace.h5";
-  if (!fs::exists(path))
+  if (!is_file(path))
     scene.places.fail({"start.from"}, fmt::format("{} holds no finished run: no file trace.h5", directory),
                       "'cuboct run SCENE --out DIR' leaves one");
   LeftState left = read_left_state(path);

@@ -254,7 +254,7 @@ std::string ConfigValue::file() const {
   namespace fs = std::filesystem;
   const std::string name = string();
   std::string path = (fs::path(file_->path).parent_path() / name).string();
-  if (!fs::is_regular_file(path))
+  if (!is_file(path))
     fail(fmt::format("no file '{}'", name), "a path is counted from the directory of " + file_->path);
   return path;
 }

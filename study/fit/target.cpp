@@ -20,12 +20,20 @@ constexpr size_t kEven = 201;
 constexpr double kElasticStrain = 0.005;
 // A stress at strain 0, over the strength, that counts as none.
 constexpr double kAtRest = 0.01;
+// Beyond every matter.
+constexpr double kMostStress = 1e15, kMostStrain = 100;
 
 // Who tells an error of point k, at its place.
 using Fail = std::function<void(size_t k, const std::string& message, const std::string& hint)>;
 
 void check(Target& target, const Fail& fail) {
   const auto [strain, stress] = std::tie(target.strain, target.stress);
+  for (size_t k = 0; k < strain.size(); ++k)
+    if (!(std::abs(stress[k]) <= kMostStress) || !(std::abs(strain[k]) <= kMostStrain))
+      fail(k,
+           fmt::format("a stress of {:g} Pa at a strain of {:g}: at most {:g} Pa and {:g} are taken",
+                       stress[k], strain[k], kMostStress, kMostStrain),
+           "the right units of the columns");
   for (size_t k = 1; k < strain.size(); ++k)
     if (!(strain[k] > strain[k - 1]))
       fail(k, fmt::format("strains must ascend, but {:g} follows {:g}", strain[k], strain[k - 1]),

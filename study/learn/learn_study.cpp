@@ -58,21 +58,28 @@ GridInput read_grid(const ConfigTable& table) {
   return out;
 }
 
-DiscInput read_disc(const ConfigTable& table) {
+// Discs stand half an edge apart, and pull in turn one way and the other: beyond that they undo one another.
+DiscInput read_disc(const ConfigTable& table, const SheetInput& sheet) {
   DiscInput out;
   out.force = static_cast<int>(table.at("force").choice("axis", {"x", "y"}));
   out.centres = static_cast<int>(table.at("centres").choice("axis", {"x", "y"}));
-  out.radius = table.number("radius", quantity::length, Range::positive()) / kAngstrom;
+  const ConfigValue radius = table.at("radius");
+  out.radius = radius.number(quantity::length, Range::positive()) / kAngstrom;
+  const auto axis = static_cast<size_t>(out.centres);
+  const double edge = (axis == 0 ? std::sqrt(3) : 3) * sheet.bond * sheet.cells[axis];
+  if (out.radius > edge / 2)
+    radius.fail(fmt::format("a disc of {:.4g} angstrom is wider than half the sheet's edge, {:.4g} angstrom",
+                            out.radius, edge));
   table.done();
   return out;
 }
 
-StaticInput read_static(const ConfigTable& table) {
+StaticInput read_static(const ConfigTable& table, const SheetInput& sheet) {
   StaticInput out;
   out.strain = table.number_or("strain", quantity::number, out.strain, {.low = 1e-6, .high = 0.02});
   out.waves = static_cast<int>(table.integer_or("waves", 1, 20, out.waves));
   out.force = force(table, "force", out.force);
-  for (const ConfigTable& disc : table.tables("disc")) out.discs.push_back(read_disc(disc));
+  for (const ConfigTable& disc : table.tables("disc")) out.discs.push_back(read_disc(disc, sheet));
   if (out.discs.empty()) table.fail("no [[static.disc]]: there is nothing to validate with");
   table.done();
   return out;
@@ -189,7 +196,7 @@ LearnStudy learn_study_of(const ConfigTable& root, const std::string& path) {
   const auto table = [&](const char* key) { return root.at(key).table(); };
   out.sheet = read_sheet(table("sheet"));
   out.grid = read_grid(table("grid"));
-  out.still = read_static(table("static"));
+  out.still = read_static(table("static"), out.sheet);
   if (const auto kernel = root.table_at("kernel")) out.kernel = read_kernel(*kernel);
   const auto fracture = root.table_at("fracture"), stretch = root.table_at("stretch"),
              prediction = root.table_at("prediction");

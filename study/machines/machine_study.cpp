@@ -107,8 +107,6 @@ class Reader {
     const std::string path = std::filesystem::path(at.file()).lexically_normal().string();
     for (size_t k = 0; k < study_.scenes.size(); ++k)
       if (study_.scenes[k].scene_path == path) return k;
-    if (!std::filesystem::is_regular_file(path))
-      at.fail(fmt::format("'scene' names no file: {}", path), "paths count from the study's directory");
     const Base& base = study_.scenes[0];
     study_.scenes.push_back(read_base(path, base.arch_path));
     study_.scenes.back().arch_text = base.arch_text;

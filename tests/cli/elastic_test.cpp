@@ -80,7 +80,8 @@ TEST(Elastic, RefusesWrongInput) {
       << "units = \"reduced\"\nmass = 1.0\n[law]\nkind = \"lj\"\nepsilon = 1.0\nsigma = 1.0\n"
          "cutoff = 2.5\n[[particle]]\nposition = [0, 0, 0]\n[run]\ndt = 0.01\nsteps = 1\n";
   expect_refusal({"elastic", loose}, loose +
-                                         " has no cell that repeats\n"
+                                         ":8:1: the scene has no cell that repeats\n"
+                                         "   8 | [[particle]]\n     | ^\n"
                                          "  hint: give it a [box] with periodic = \"xyz\", or a [packing]\n");
 }
 

@@ -75,6 +75,24 @@ TEST_F(LimitsTest, MoreParticlesThanMemory) {
       << text;
 }
 
+// Commands that run the machine for a few steps, too: 570 bytes a particle.
+TEST_F(LimitsTest, AMachineThatIsLargerThanMemory) {
+  constexpr Limits kLittle{.memory = uint64_t{500} << 20, .cpu_seconds = 20};
+  const std::string scene = file("scene.toml", block("cells = [60, 60, 60]"));
+  const std::vector<std::vector<std::string>> commands{{"boards", scene, "--nodes", "8"},
+                                                       {"energy", scene},
+                                                       {"crosscheck", scene},
+                                                       {"emit", scene, "--out", bench_.path("project")}};
+  for (const std::vector<std::string>& command : commands) {
+    const Answer answer = bench_.cuboct(command, {}, kLittle);
+    EXPECT_EQ(answer.code, 2) << command[0] << answer.err;
+    EXPECT_TRUE(
+        std::regex_search(answer.err, std::regex(":9:9: the machine takes about [0-9.]+ [MG]B of memory: ")))
+        << command[0] << answer.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(bench_.path("project")));
+}
+
 TEST_F(LimitsTest, ABeamOfTooFineAPitch) {
   const std::string text = refusal(
       "density = \"7800 kg/m^3\"\n[packing]\npitch = \"0.05 mm\"\n[geometry]\nshape = \"box\"\n"
@@ -178,7 +196,7 @@ TEST_F(LimitsTest, ListsOfSteps) {
             path +
                 ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
                 "  hint: frame_every = 300000\n");
-  answer = run(scene, {"--frame-every", "7", "--out", bench_.path("out")});
+  answer = run(scene, {"--frame-every", "7", "--out", bench_.path("project")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,
             "--frame-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"

@@ -160,6 +160,18 @@ TEST_F(LearnCommand, LearnsGrapheneAndGoesOn) {
   EXPECT_EQ(cuboct::test::contents(bench_.path("learned/samples.jsonl")), kept);
 }
 
+// Their forces would undo one another, and leave samples without a load.
+TEST_F(LearnCommand, RefusesDiscsThatOverlap) {
+  const std::string path = study("");
+  std::string text = cuboct::test::contents(path);
+  text.replace(text.find("10 angstrom"), 11, "25 angstrom");
+  std::ofstream(path) << text;
+  const auto answer = bench_.cuboct({"learn", path, "--out", bench_.path("none")});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(cuboct::test::without_excerpt(answer.err),
+            path + ":9:48: a disc of 25 angstrom is wider than half the sheet's edge, 39.42 angstrom\n");
+}
+
 TEST_F(LearnCommand, RefusesAKernelWithoutPoints) {
   const auto answer =
       bench_.cuboct({"learn", study("[kernel]\nhorizons = [5]\n"), "--out", bench_.path("none")});

@@ -92,6 +92,12 @@ TEST(ElementStudy, SaysWhereAFileIsWrong) {
   EXPECT_NE(refusal(changed(kBar, "strains", "strain")).find("study.toml:"), std::string::npos);
   EXPECT_NE(refusal(changed(kBar, "si_erhart_albe", "si_1898")).find("did you mean 'si_1988'"),
             std::string::npos);
+  EXPECT_EQ(refusal(changed(kBar, "0.002", "-1e-308")),
+            "study.toml:16:11: a strain of -1e-308 is lost in the rounding of positions: 1e-09 at least");
+  const std::string empty = ::testing::TempDir() + "cuboct_no_entry.tersoff";
+  std::ofstream(empty) << "# none\n";
+  EXPECT_EQ(refusal(changed(kBar, "potential = \"si_erhart_albe\"", "file = \"" + empty + "\"")),
+            "study.toml:2:8: " + empty + " has no entry for Si Si Si");
   EXPECT_NE(
       refusal(kMaterial + "[mesh]\ncubes = [1, 1, 1]\nsize = \"[1, 1, 1] um\"\n").find("nothing to study"),
       std::string::npos);

@@ -17,6 +17,7 @@ FOREIGN = re.compile(
     rb"|HDF5-DIAG|vector::|_M_[a-z]+|bad_alloc|bad_cast|bad optional|bad_variant|bad_function|Assertion|assertion|Sanitizer|runtime error:"
     rb"|Segmentation|core dumped|SQLITE_|sqlite3_|toml::|nlohmann|Traceback|unordered_map::|map::at|CLI::|fmt::|Eigen::|0x[0-9a-f]{9,}"
     rb"|gnuplot>|line 0:|pure virtual|stack smashing|free\(\)|malloc|corrupted|out of memory")
+GUARDED = re.compile(rb"crashes the library that reads it \([A-Za-z ]+\)")  # a guarded reader tells of a library, in words of its own
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u2028-\u202e\u2066-\u2069]")
 EXCERPT = re.compile(r"^ *\d+ \| ")
 POINTER = re.compile(r"^ +\| +\^$|^ +\| \^$")
@@ -28,7 +29,7 @@ LEFTOVER = re.compile(r"(-wal|-shm|-journal|\.tmp|\.tmp\.\w+|~|\.part|\.partial)
 # or of what several values together make.
 NOWHERE = re.compile(
     r"holds no run|is not a file|no such file|is a directory|cannot (read|write|make|open)|memory|disk|belongs to|made by another|"
-    r"already|another study|another fit|another scene|unknown option|has no frames|no checkpoint|"
+    r"already|this file is in|another study|another fit|another scene|unknown option|has no frames|no checkpoint|"
     r"left out|the value of|argument \d+ of|is required|excludes|requires|"
     r"^--|: --|in doubles|particles: '|\[search\]: |has no atom within|meets itself|the front passed|interrupted")
 
@@ -66,7 +67,7 @@ def words(text, limit):
     found = []
     if len(text) > limit:
         found.append(("enormous message", f"{len(text)} bytes"))
-    foreign = FOREIGN.search(text)
+    foreign = FOREIGN.search(GUARDED.sub(b"", text))
     if foreign:
         line = text[text.rfind(b"\n", 0, foreign.start()) + 1:].split(b"\n", 1)[0]
         found.append(("foreign words", line[:300].decode("utf-8", "replace")))
@@ -128,7 +129,7 @@ def began(case, ended, after, text):
         return False
     if case.command[0] == "elastic":  # the answer is that the matter is not stable
         return b"stable" in ended.out
-    return any(name.startswith("out/") for name in after) or bool(re.search(r"\bstep \d|runs?\b|interrupted|failed|differ", text))
+    return any(name.startswith("out/") for name in after) or bool(re.search(r"\bstep \d|runs?\b|at a (?:pitch|strain) of|interrupted|failed|differ", text))
 
 
 def judge(case, ended, before, after):

@@ -96,6 +96,8 @@ TEST(Excerpt, StandsBetweenMessageAndHint) {
   EXPECT_EQ(told.find("unknown key 'ä"), 0U);
   EXPECT_NE(told.find("ä ... (998220 bytes more) ... ä"), std::string::npos) << told;
   EXPECT_TRUE(told.ends_with("ä' here"));
+  // Of bytes that are shown by four characters each as many fewer.
+  EXPECT_LT(InputError("wrong", std::string(1800, '\0')).told().size(), 2000U);
 }
 
 }  // namespace

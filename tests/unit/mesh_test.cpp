@@ -174,6 +174,8 @@ TEST_F(Meshes, ThatHoldNoSolidAreRefused) {
             std::string::npos)
       << error_of(of("half.stl", mm));
   EXPECT_NE(error_of(of("none.stl", mm)).find("no file 'none.stl'"), std::string::npos);
+  const std::string longer = std::string(300, 'x') + ".stl";  // than a file's name can be
+  EXPECT_NE(error_of(of(longer, mm)).find("scene.toml:12:8: no file '" + longer + "'"), std::string::npos);
   EXPECT_NE(error_of(of("half.stl", "")).find("'unit'"), std::string::npos) << error_of(of("half.stl", ""));
   for (const char* file : {"text.stl", "empty.obj", "nan.obj"})
     EXPECT_NE(error_of(of(file, mm)).find("scene.toml:12:8: "), std::string::npos) << error_of(of(file, mm));

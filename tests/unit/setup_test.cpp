@@ -168,6 +168,9 @@ TEST(Setup, RefusalsStandAtTheirKeys) {
       "[[particle]]\nposition = [1.5, 1.5, 3]\nvelocity = [0.1, 0, 0]\n"
       "[[particle]]\nposition = [1.5, 1.5, 4]\nvelocity = [0, 0, 700]\n",
       "s.toml:52:12", "particle ");
+  // The step grows with the mass, until no width holds what particles move in one.
+  std::string heavy = with("mass = 1.0\n", "mass = 1e300\n");
+  expect_place(heavy.replace(heavy.find("dt = 0.14"), 9, "dt = \"auto\""), "s.toml:41:6", "at 0.");
   // Of the machine: at the arch's.
   expect_place(with("steps = 24", "steps = 24 "), "a.toml:3:9", "brick = [8, 8, 8]",
                "[node]\nbrick = [8, 8, 8]\n");
