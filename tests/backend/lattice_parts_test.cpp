@@ -21,7 +21,7 @@ namespace cuboct::test {
 namespace {
 
 // Boxes with gaps between them; axes are rings of 3 to 8 cells, or open with coordinates of any sign.
-Lattice random_lattice(Dice& dice) {
+cuboct::Lattice random_lattice(Dice& dice) {
   Cell period{}, low{}, size{};
   for (int a = 0; a < 3; ++a) {
     if (dice.chance(50)) period[a] = dice.draw(3, 8);
@@ -45,7 +45,7 @@ Lattice random_lattice(Dice& dice) {
 // A crowd in random places of a lattice.
 struct Crowd {
   static constexpr int kFrac = 20;
-  Crowd(const Lattice& lattice, Dice& dice, uint32_t count) : members(lattice, 1000, count) {
+  Crowd(const cuboct::Lattice& lattice, Dice& dice, uint32_t count) : members(lattice, 1000, count) {
     const uint32_t room = (count + emu::kGroup - 1) / emu::kGroup * emu::kGroup;
     for (auto& x : particles.x) x = emu::PaddedArray<double>(room);
     for (uint32_t p = 0; p < count; ++p) {
@@ -69,8 +69,8 @@ struct Crowd {
 };
 
 // (particle, shift) -> distance squared in cells, of all images less than `most` away.
-std::map<std::pair<uint32_t, int>, double> brute(const Lattice& lattice, const Crowd& crowd, uint32_t count,
-                                                 uint32_t i, double most) {
+std::map<std::pair<uint32_t, int>, double> brute(const cuboct::Lattice& lattice, const Crowd& crowd,
+                                                 uint32_t count, uint32_t i, double most) {
   std::map<std::pair<uint32_t, int>, double> found;
   for (uint32_t j = 0; j < count; ++j)
     for (int s = 0; s < 27; ++s) {
@@ -92,7 +92,7 @@ TEST(LatticeSearch, FindsAllWithinReachAndFewBeyond) {
   Dice dice(1);
   size_t near = 0, far = 0, images = 0;
   for (int round = 0; round < 150; ++round) {
-    const Lattice lattice = random_lattice(dice);
+    const cuboct::Lattice lattice = random_lattice(dice);
     const emu::Rows rows(lattice);
     const auto count = static_cast<uint32_t>(dice.draw(1, 120));
     Crowd crowd(lattice, dice, count);
@@ -138,7 +138,7 @@ TEST(LatticeRows, GiveTheNodesBetweenTwoCoordinates) {
   Dice dice(2);
   int gaps = 0;
   for (int round = 0; round < 60; ++round) {
-    const Lattice lattice = random_lattice(dice);
+    const cuboct::Lattice lattice = random_lattice(dice);
     const emu::Rows rows(lattice);
     for (uint32_t n = 0; n < lattice.size(); ++n) {
       const uint32_t r = rows.row_of(n);
@@ -169,7 +169,7 @@ TEST(LatticeRows, GiveTheNodesBetweenTwoCoordinates) {
 }
 
 // What a set of cells holds, by its flags.
-std::set<uint32_t> cells_of_set(const emu::CellSet& set, const Lattice& lattice) {
+std::set<uint32_t> cells_of_set(const emu::CellSet& set, const cuboct::Lattice& lattice) {
   std::set<uint32_t> cells;
   for (uint32_t n = 0; n < lattice.size(); ++n)
     if (set.flags()[n] != 0) cells.insert(n);
@@ -180,7 +180,7 @@ TEST(LatticeCellSet, DilatesToTheNeighbourhoods) {
   Dice dice(3);
   size_t grown = 0;
   for (int round = 0; round < 400; ++round) {
-    const Lattice lattice = random_lattice(dice);
+    const cuboct::Lattice lattice = random_lattice(dice);
     const emu::Rows rows(lattice);
     emu::CellSet set(lattice, rows), out(lattice, rows);
     std::set<uint32_t> expected;
@@ -217,13 +217,13 @@ TEST(LatticeCellSet, DilatesInTurnOverTwoLattices) {
       for (int x = 0; x < length; ++x) cells.push_back({x, 0, z});
       z += 3;
     }
-    return Lattice(cells, {});
+    return cuboct::Lattice(cells, {});
   };
-  const Lattice one = rows_of_lengths({8, 2}), two = rows_of_lengths({2, 8});
+  const cuboct::Lattice one = rows_of_lengths({8, 2}), two = rows_of_lengths({2, 8});
   ASSERT_EQ(one.size(), two.size());
   const emu::Rows rows_one(one), rows_two(two);
   ASSERT_EQ(rows_one.count(), rows_two.count());
-  const auto dilated = [](const Lattice& lattice, const emu::Rows& rows, uint32_t cell) {
+  const auto dilated = [](const cuboct::Lattice& lattice, const emu::Rows& rows, uint32_t cell) {
     emu::CellSet set(lattice, rows), out(lattice, rows);
     set.flags()[cell] = 1;
     set.survey(rows);
@@ -237,7 +237,7 @@ TEST(LatticeCellSet, DilatesInTurnOverTwoLattices) {
 
 TEST(LatticeMembers, KeepTheOrderOfSlotsAndRefuseInTheOrderOfAxes) {
   // 0 1 2 along x, capacity 3.
-  const Lattice lattice({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {});
+  const cuboct::Lattice lattice({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {});
   const auto ids = [](const emu::Members& members, uint32_t cell) {
     std::vector<uint32_t> list;
     members.for_each(cell, [&](uint32_t id) { list.push_back(id); });
@@ -301,7 +301,7 @@ TEST(LatticeCut, GivesEachRankItsShareToWithinAPlane) {
     for (int z = 0; z < size[2]; ++z)
       for (int y = 0; y < size[1]; ++y)
         for (int x = 0; x < size[0]; ++x) cells.push_back({x, y, z});
-    const Lattice lattice(cells, {});
+    const cuboct::Lattice lattice(cells, {});
     std::vector<uint16_t> weight(lattice.size());
     for (auto& w : weight) w = static_cast<uint16_t>(dice.draw(0, 9));
     const int ranks = dice.draw(2, 8);
@@ -343,13 +343,13 @@ TEST(LatticeCut, GivesEachRankItsShareToWithinAPlane) {
 }
 
 TEST(LatticeCut, GivesFewNodesToManyRanks) {
-  const Lattice one({{5, -3, 7}}, {});
+  const cuboct::Lattice one({{5, -3, 7}}, {});
   for (const char* how : {"bricks", "x", "y", "z"}) {
     EXPECT_LT(emu::cut_cells(one, {4}, 8, how).at(0), 8);
     EXPECT_LT(emu::cut_cells(one, {0}, 8, how).at(0), 8);
-    EXPECT_TRUE(emu::cut_cells(Lattice({}, {}), {}, 8, how).empty());
+    EXPECT_TRUE(emu::cut_cells(cuboct::Lattice({}, {}), {}, 8, how).empty());
   }
-  const Lattice two({{0, 0, 0}, {1, 0, 0}}, {});
+  const cuboct::Lattice two({{0, 0, 0}, {1, 0, 0}}, {});
   const auto owner = emu::cut_cells(two, {3, 3}, 2, "bricks");
   EXPECT_EQ(owner, (std::vector<uint16_t>{0, 1}));
 }

@@ -14,7 +14,7 @@
 namespace cuboct::test {
 namespace {
 
-emu::RunResult run(const Case& c, double stall_rate = 0, uint64_t stall_seed = 1) {
+emu::RunResult run_native(const Case& c, double stall_rate = 0, uint64_t stall_seed = 1) {
   return run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps, stall_rate, stall_seed),
                    emu::native_nodes(c.setup.plan), "plain");
 }
@@ -33,7 +33,7 @@ TEST_P(Native, EqualsGoldenAtEachStep) {
   const Case c = make_case(GetParam());
   const GoldenRun golden = run_golden(c.setup, c.steps);
   ASSERT_FALSE(golden.fault) << golden.fault->what();
-  const Compared compared = compare(c.setup.plan, golden, run(c));
+  const Compared compared = compare(c.setup.plan, golden, run_native(c));
   EXPECT_EQ(compared.difference, "");
   EXPECT_EQ(compared.steps, c.steps + 1);
   EXPECT_EQ(compared.particles, (c.steps + 1) * c.setup.initial.particles.size());
@@ -43,13 +43,13 @@ TEST_P(Native, EqualsGoldenAtEachStep) {
 
 TEST_P(Native, StallsChangeCyclesAndNoBits) {
   const Case c = make_case(GetParam());
-  const emu::RunResult free = run(c);
+  const emu::RunResult free = run_native(c);
   for (const double rate : {0.1, 0.6}) {
-    const emu::RunResult stalled = run(c, rate, 42);
+    const emu::RunResult stalled = run_native(c, rate, 42);
     EXPECT_EQ(free.trace.state_hash, stalled.trace.state_hash);
     EXPECT_TRUE(free.order == stalled.order);
     EXPECT_EQ(free.trace.cycles == stalled.trace.cycles, c.setup.plan.lattice.size() == 1);
-    EXPECT_TRUE(run(c, rate, 42).trace.cycles == stalled.trace.cycles);
+    EXPECT_TRUE(run_native(c, rate, 42).trace.cycles == stalled.trace.cycles);
   }
 }
 
@@ -62,7 +62,7 @@ TEST(NativeRandom, EqualsGolden) {
     const Case c = random_case(seed);
     const GoldenRun golden = run_golden(c.setup, c.steps);
     for (const double rate : {0.0, 0.3}) {
-      const Compared compared = compare(c.setup.plan, golden, run(c, rate, seed));
+      const Compared compared = compare(c.setup.plan, golden, run_native(c, rate, seed));
       ASSERT_EQ(compared.difference, "") << c.name << " at stall rate " << rate;
       ASSERT_EQ(compared.steps, golden.states.size());
       particles += compared.particles;
@@ -85,7 +85,7 @@ void expect_faults_of_golden(const std::function<Case(Fault)>& case_of) {
     ASSERT_TRUE(golden.fault) << c.name;
     EXPECT_EQ(golden.fault->fault, fault) << golden.fault->what();
     for (const double rate : {0.0, 0.4}) {
-      const emu::RunResult result = run(c, rate);
+      const emu::RunResult result = run_native(c, rate);
       EXPECT_EQ(compare(c.setup.plan, golden, result).difference, "") << c.name;
       ASSERT_TRUE(result.trace.stop) << c.name;
       EXPECT_EQ(result.trace.stop->fault, fault);
@@ -117,7 +117,7 @@ TEST(NativeFaults, CapacityHoldsAtTheLimit) {
       for (const auto& cell : step) fullest = std::max(fullest, cell.size());
     EXPECT_EQ(fullest, 5u);
     c.steps = 12;
-    EXPECT_EQ(compare(c.setup.plan, golden, run(c)).difference, "");
+    EXPECT_EQ(compare(c.setup.plan, golden, run_native(c)).difference, "");
   }
 }
 
@@ -127,7 +127,7 @@ TEST(NativeFaults, AFullCellAtTheStartIsRefusedAsByGolden) {
   const GoldenRun golden = run_golden(c.setup, 1);
   ASSERT_TRUE(golden.fault);
   try {
-    run(c);
+    run_native(c);
     FAIL();
   } catch (const RunError& e) {
     EXPECT_STREQ(e.what(), golden.fault->what());
@@ -188,7 +188,7 @@ TEST(NativePlanar, EqualsMayInteract) {
 TEST(Native, NoStepsShowsTheInitialState) {
   Case c = make_case("undamped_2x2x2");
   c.steps = 0;
-  const Compared compared = compare(c.setup.plan, run_golden(c.setup, 0), run(c));
+  const Compared compared = compare(c.setup.plan, run_golden(c.setup, 0), run_native(c));
   EXPECT_EQ(compared.difference, "");
   EXPECT_EQ(compared.steps, 1u);
 }

@@ -9,7 +9,7 @@
 namespace cuboct::test {
 namespace {
 
-constexpr double kTimeout = 20;  // s
+constexpr double kBusTimeout = 20;  // s
 
 BoardChoice behind(const std::string& bus) {
   BoardChoice choice;
@@ -24,7 +24,7 @@ TEST_P(Bus, HoldsGoldensBitsAndFaults) {
   const auto grips = board_setup("grips.toml"), thrown = board_setup("thrown.toml");
   uint64_t bytes = 0;
   {
-    emu::Host host(machine.port(), SimulatedBoard::kBaud, kTimeout);
+    emu::Host host(machine.port(), SimulatedBoard::kBaud, kBusTimeout);
     EXPECT_EQ(host.info().clock_hz, 100000000u);
     const Trace run = run_on_board(host, grips, {.steps = 24, .frames = {0, 7, 24}});
     EXPECT_EQ(difference(grips.plan, golden_trace(grips, 24), run), "");

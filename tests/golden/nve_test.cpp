@@ -11,13 +11,13 @@
 namespace cuboct {
 namespace {
 
-const std::string kScenes = CUBOCT_SOURCE_DIR "/scenes/validation/";
+const std::string kTreeScenes = CUBOCT_SOURCE_DIR "/scenes/validation/";
 
 // The liquid, 4 units of time after its start as a crystal.
 Body melted() {
   const Scene scene =
-      test::scene_with(kScenes + "melt_864.toml", {{"run.duration", "4"}, {"run.probe_every", "0"}});
-  const Plan plan = plan_of(scene, read_arch(kScenes + "wide.toml"));
+      test::scene_with(kTreeScenes + "melt_864.toml", {{"run.duration", "4"}, {"run.probe_every", "0"}});
+  const Plan plan = plan_of(scene, read_arch(kTreeScenes + "wide.toml"));
   emu::LatticeRun request;
   request.steps = request.hash_every = scene.steps;
   request.frames = {scene.steps};
@@ -29,12 +29,12 @@ Body melted() {
 
 // Root mean square fluctuation of the total energy per particle about its mean, over 5 units of time.
 double fluctuation(const Body& liquid, double dt) {
-  Scene scene = test::scene_with(kScenes + "melt_864.toml",
+  Scene scene = test::scene_with(kTreeScenes + "melt_864.toml",
                                  {{"run.dt", fmt::format("{}", dt)},
                                   {"run.duration", "5"},
                                   {"run.probe_every", fmt::format("{}", std::lround(0.048 / dt))}});
   scene.body = liquid;
-  const auto curves = test::curves_of(scene, read_arch(kScenes + "wide.toml"), true);
+  const auto curves = test::curves_of(scene, read_arch(kTreeScenes + "wide.toml"), true);
   const Curve& total = test::curve_named(curves, "energy.total");
   double sum = 0, squares = 0;
   const auto n = static_cast<double>(total.value.size());

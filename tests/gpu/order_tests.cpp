@@ -10,7 +10,13 @@
 namespace cuboct::test {
 namespace {
 
-TEST(GpuOrder, SeveralDevicesHoldGoldensBitsInWhateverOrderTheyWork) {
+class GpuOrder : public testing::Test {
+ protected:
+  GpuOrder() { gpu::Shuffle::all().on = true; }
+  ~GpuOrder() override { gpu::Shuffle::all().on = false; }
+};
+
+TEST_F(GpuOrder, SeveralDevicesHoldGoldensBitsInWhateverOrderTheyWork) {
   Met met;
   auto& shuffle = gpu::Shuffle::all();
   for (uint64_t seed = 1; seed <= 500; ++seed) {
@@ -36,7 +42,7 @@ TEST(GpuOrder, SeveralDevicesHoldGoldensBitsInWhateverOrderTheyWork) {
   EXPECT_GT(shuffle.overtaken, 10000u);
 }
 
-TEST(GpuOrder, RealEnginesHaveOneRunInWhateverOrderTheyWork) {
+TEST_F(GpuOrder, RealEnginesHaveOneRunInWhateverOrderTheyWork) {
   Scene scene;
   scene.rule = simple_rule(preset_law("ductile", 1e-3, 1e3), 1e-6, 3e-6);
   scene.rule.damping.coefficient = 1e-3;

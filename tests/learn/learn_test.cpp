@@ -16,13 +16,13 @@
 namespace cuboct::learn {
 namespace {
 
-Grid grid_of(int points) { return {points, Vec3(5e-10, 5.03e-10, 0), 3.35e-10, 1e-9}; }
+Grid square_grid(int points) { return {points, Vec3(5e-10, 5.03e-10, 0), 3.35e-10, 1e-9}; }
 
 // On waves S u is the force density of the engine's rule with the opposite sign. With P = 0 and alpha = 1 the
 // kernel is the rule's influence of power 1. The rule divides by its integral of w r^2, whose quadrature is
 // exact here: w r^2 = r^4/r^3.
 TEST(Symbol, IsTheOperatorOfTheEngine) {
-  const Grid grid = grid_of(12);
+  const Grid grid = square_grid(12);
   const Symbol symbol(grid, 3);
   const Kernel kernel{-0.2e12, 0.7e12, 1, {1}, 3};
   LpsMaterial material;
@@ -80,7 +80,7 @@ std::vector<StaticSample> elastic(const Grid& grid, double lambda, double mu, in
 }
 
 TEST(KernelProblem, HasTheSlopesOfItsDifferences) {
-  const Grid grid = grid_of(12);
+  const Grid grid = square_grid(12);
   const Symbol symbol(grid, 3);
   const auto samples = elastic(grid, -0.2e12, 0.7e12, 2);
   std::vector<const StaticSample*> all;
@@ -106,7 +106,7 @@ TEST(KernelProblem, HasTheSlopesOfItsDifferences) {
 
 // Of waves of four spacings and more: what a kernel of three spacings cannot follow is some percent.
 TEST(FitKernel, FindsTheModuliOfAnElasticSolid) {
-  const Grid grid = grid_of(12);
+  const Grid grid = square_grid(12);
   const auto training = elastic(grid, -0.2e12, 0.7e12, 2);
   KernelInput input;
   input.evaluations = 1000;
@@ -119,7 +119,7 @@ TEST(FitKernel, FindsTheModuliOfAnElasticSolid) {
 }
 
 TEST(FitKernel, RefusesWhatItCannotLearnFrom) {
-  const Grid grid = grid_of(12);
+  const Grid grid = square_grid(12);
   auto samples = elastic(grid, -0.2e12, 0.7e12, 1);
   samples[1].u[5][0] = std::nan("");
   try {

@@ -11,7 +11,7 @@
 namespace cuboct {
 namespace {
 
-std::shared_ptr<const SampleMaterial> springs() {
+std::shared_ptr<const SampleMaterial> spring_material() {
   constexpr double kMass = 28.0855 * 1.66053906660e-27;  // kg
   static const auto material = std::make_shared<const SampleMaterial>(
       crystal_material(Crystal::diamond, std::make_shared<test::Springs>(), 5.5, 1, kMass, 1e-9));
@@ -52,10 +52,10 @@ ElementBody body(const std::shared_ptr<Seen>& seen, double tolerance, int thread
   options.relaxer = [seen, threads](const SampleMaterial& material, size_t samples) {
     return std::make_unique<Watched>(host_relaxer(threads)(material, samples), seen);
   };
-  return {std::move(mesh), springs(), std::move(turns), options};
+  return {std::move(mesh), spring_material(), std::move(turns), options};
 }
 
-void shake(ElementBody& body, double size) {
+void shake_vertices(ElementBody& body, double size) {
   for (size_t v = 0; v < body.x().size(); ++v)
     for (int a = 0; a < 3; ++a) body.x()[v][a] += size * std::sin(static_cast<double>(7 * v + 3 * a + 1));
 }
@@ -65,7 +65,7 @@ TEST(SampleRelaxer, IsAskedForTheSamplesThatAreDueAlone) {
   ElementBody b = body(seen, 1e-5);
   b.update();
   EXPECT_TRUE(seen->batches.empty());  // nothing is strained
-  shake(b, 1e-9);
+  shake_vertices(b, 1e-9);
   b.update();
   std::vector<size_t> all(b.mesh().elements.size());
   std::iota(all.begin(), all.end(), 0);
@@ -88,7 +88,7 @@ TEST(SampleRelaxer, ThatFindsNoRestEndsTheRunWithTheElement) {
   const auto seen = std::make_shared<Seen>();
   seen->restless = 12;
   ElementBody b = body(seen, 0);
-  shake(b, 1e-9);
+  shake_vertices(b, 1e-9);
   try {
     b.update();
     FAIL();
@@ -104,16 +104,16 @@ TEST(SampleRelaxer, ThatFindsNoRestEndsTheRunWithTheElement) {
 TEST(SampleRelaxer, HandsItsPlacesOn) {
   const auto seen = std::make_shared<Seen>();
   ElementBody one = body(seen, 0), other = body(seen, 0, 2);
-  shake(one, 2e-9);
+  shake_vertices(one, 2e-9);
   one.update();
   other.x() = one.x();
   other.restore(one.samples(), one.work());
   EXPECT_EQ(seen->set, 1);
   const auto moved = [&](const ElementSample& s) {
-    return (s.place[1] - springs()->lattice.place[1]).norm();
+    return (s.place[1] - spring_material()->lattice.place[1]).norm();
   };
   EXPECT_GT(moved(one.samples()[3]), 1e-6);  // atoms did give way
-  for (ElementBody* b : {&one, &other}) shake(*b, 1e-9), b->update();
+  for (ElementBody* b : {&one, &other}) shake_vertices(*b, 1e-9), b->update();
   EXPECT_EQ(one.force(), other.force());
   EXPECT_EQ(one.energy(), other.energy());
   for (size_t e = 0; e < one.samples().size(); ++e)

@@ -16,11 +16,11 @@
 namespace cuboct {
 namespace {
 
-constexpr double kMass = 28.0855 * 1.66053906660e-27;  // kg
+constexpr double kSiliconMass = 28.0855 * 1.66053906660e-27;  // kg
 
 const SampleMaterial& silicon() {
-  static const SampleMaterial material =
-      crystal_material(Crystal::diamond, tersoff_law(tersoff_set("si_erhart_albe")), 5.43, 2, kMass, 1e-6);
+  static const SampleMaterial material = crystal_material(
+      Crystal::diamond, tersoff_law(tersoff_set("si_erhart_albe")), 5.43, 2, kSiliconMass, 1e-6);
   return material;
 }
 std::shared_ptr<const SampleMaterial> shared() { return {std::shared_ptr<void>(), &silicon()}; }
@@ -38,8 +38,8 @@ TEST(Silicon, HasTheConstantsOfLammps) {
 }
 
 TEST(Silicon, OfEightAtomsIsThatOfSixtyFour) {
-  const SampleMaterial small =
-      crystal_material(Crystal::diamond, tersoff_law(tersoff_set("si_erhart_albe")), 5.43, 1, kMass, 1e-6);
+  const SampleMaterial small = crystal_material(Crystal::diamond, tersoff_law(tersoff_set("si_erhart_albe")),
+                                                5.43, 1, kSiliconMass, 1e-6);
   EXPECT_LT((small.constants - silicon().constants).cwiseAbs().maxCoeff(), 1e-5 * 169e9);
 }
 
@@ -111,7 +111,7 @@ TEST(Silicon, PlaneWavesHaveTheSpeedOfTheConstants) {
 TEST(Silicon, RefusesParametersWithoutALattice) {
   Tersoff bad = tersoff_set("si_erhart_albe");
   for (auto& term : bad.terms) term.cos_theta0 = 0.9;
-  EXPECT_THROW(crystal_material(Crystal::diamond, tersoff_law(bad), 5.43, 2, kMass, 1e-6), InputError);
+  EXPECT_THROW(crystal_material(Crystal::diamond, tersoff_law(bad), 5.43, 2, kSiliconMass, 1e-6), InputError);
 }
 
 }  // namespace

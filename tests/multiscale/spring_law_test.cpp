@@ -14,11 +14,11 @@
 namespace cuboct {
 namespace {
 
-constexpr double kMass = 28.0855 * 1.66053906660e-27;           // kg
+constexpr double kSpringMass = 28.0855 * 1.66053906660e-27;     // kg
 constexpr double kC11 = 165.6e9, kC12 = 63.4e9, kC44 = 78.1e9;  // Pa, about those of silicon
 
 SampleMaterial material_of(Crystal crystal, const ShellSprings& springs, double edge) {
-  return crystal_material(crystal, spring_law(springs), edge, 2, kMass, 1e-9);
+  return crystal_material(crystal, spring_law(springs), edge, 2, kSpringMass, 1e-9);
 }
 
 // Constants come from stresses of strains of 1e-4, so they are good to some 1e-6 of themselves.
@@ -61,7 +61,7 @@ TEST(SpringLaw, FitIsTheLeastOfTheSquaresOfMisses) {
 // shape; central differences of 1e-5 leave an error of 1e-9.
 TEST(SpringLaw, ForcesAreTheSlopeOfTheEnergy) {
   const ShellSprings springs = springs_of(Crystal::diamond, 5.43, cauchy_fit(kC11, kC12, kC44));
-  const AtomicLattice lattice = crystal_lattice(Crystal::diamond, 5.43, 1, kMass);
+  const AtomicLattice lattice = crystal_lattice(Crystal::diamond, 5.43, 1, kSpringMass);
   const auto forces = spring_law(springs)->forces();
   Mat3 shear;
   shear << 1.01, 0.02, 0, 0, 0.98, 0.015, 0, 0, 1.02;

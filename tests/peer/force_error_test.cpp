@@ -74,7 +74,7 @@ std::vector<Vec3> fixed_forces(const Warm& warm, const Plan& plan) {
 
 Arch arch_of(const char* name) { return read_arch(kScenes + "validation/" + name + ".toml"); }
 
-struct System {
+struct ErrorSystem {
   const char* name;
   const char* scene;
   uint64_t steps;
@@ -82,17 +82,18 @@ struct System {
       wide_median;  // what the page states, and 30 % more: other compilers, other trajectories
 };
 constexpr double kRoom = 1.3;
-void PrintTo(const System& system, std::ostream* out) { *out << system.name; }
+void PrintTo(const ErrorSystem& system, std::ostream* out) { *out << system.name; }
 
-class ForceError : public testing::TestWithParam<System> {};
-INSTANTIATE_TEST_SUITE_P(Systems, ForceError,
-                         testing::Values(System{"liquid", "validation/melt_864.toml", 1500, 3.8e-4, 3.8e-6},
-                                         System{"crystal", "validation/crystal.toml", 300, 4.9e-4, 6.0e-6},
-                                         System{"block", "undamped_block.toml", 300, 8.3e-4, 3.1e-6}),
-                         [](const auto& info) { return info.param.name; });
+class ForceError : public testing::TestWithParam<ErrorSystem> {};
+INSTANTIATE_TEST_SUITE_P(
+    Systems, ForceError,
+    testing::Values(ErrorSystem{"liquid", "validation/melt_864.toml", 1500, 3.8e-4, 3.8e-6},
+                    ErrorSystem{"crystal", "validation/crystal.toml", 300, 4.9e-4, 6.0e-6},
+                    ErrorSystem{"block", "undamped_block.toml", 300, 8.3e-4, 3.1e-6}),
+    [](const auto& info) { return info.param.name; });
 
 TEST_P(ForceError, InOpenMMsMeasure) {
-  const System& system = GetParam();
+  const ErrorSystem& system = GetParam();
   const Warm bodies = warm(kScenes + system.scene, system.steps);
   const std::vector<Vec3> exact = exact_forces(bodies);
   const bool verbose = std::getenv("CUBOCT_VERBOSE") != nullptr;

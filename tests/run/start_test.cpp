@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kRoot = CUBOCT_SOURCE_DIR;
-const std::string kGrips = kRoot + "/scenes/boards/grips.toml";
+const std::string kTree = CUBOCT_SOURCE_DIR;
+const std::string kGrips = kTree + "/scenes/boards/grips.toml";
 
 // A directory that is gone with the test.
 class Directory {
@@ -41,7 +41,7 @@ class Directory {
 Bed bed_of(Scene scene, const std::string& arch = "") {
   Bed bed;
   bed.scene = std::move(scene);
-  bed.plan = plan_of(bed.scene, read_arch(arch.empty() ? arch : kRoot + "/" + arch));
+  bed.plan = plan_of(bed.scene, read_arch(arch.empty() ? arch : kTree + "/" + arch));
   bed.one_thread.engine.threads = 1;
   bed.two_threads.engine.threads = 2;
   return bed;
@@ -79,7 +79,7 @@ class Starts : public testing::TestWithParam<Kind> {
 // Ends imposed and damped; held by controllers; a warm box that repeats; a flat sheet.
 TEST_P(Starts, InTwoPartsAsInOne) {
   for (const std::string name : {"boards/grips", "failures/stiff_hold_healthy", "two_types", "sheet"}) {
-    const std::string path = kRoot + "/scenes/" + name + ".toml";
+    const std::string path = kTree + "/scenes/" + name + ".toml";
     const Bed whole_bed = bed_of(read_scene(path));
     const Recorded whole = run(whole_bed, 21);
     const Directory first("first." + GetParam().name);
@@ -181,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Starts, testing::ValuesIn(fixed_kinds()),
 TEST(RealStarts, InTwoPartsAsInOne) {
   for (const std::string name : {"boards/grips", "failures/stiff_hold_healthy", "two_types"})
     for (const Precision precision : {Precision::float64, Precision::float32}) {
-      const std::string path = kRoot + "/scenes/" + name + ".toml";
+      const std::string path = kTree + "/scenes/" + name + ".toml";
       const RealOptions options{.precision = precision};
       const auto run = [&](const Bed& bed, uint64_t steps) {
         return record(bed.scene, reference_kind(bed.scene, bed.plan, options), of_steps(steps));
@@ -242,7 +242,7 @@ Recorded expect_goes_on(const Bed& bed, const EngineKind& kind, const EngineKind
 }
 
 TEST(RealStarts, GoOnFromACheckpoint) {
-  const Bed bed = bed_of(read_scene(kRoot + "/scenes/failures/stiff_hold_healthy.toml"));
+  const Bed bed = bed_of(read_scene(kTree + "/scenes/failures/stiff_hold_healthy.toml"));
   const EngineKind kind = reference_kind(bed.scene, bed.plan, {});
   expect_goes_on(bed, kind, kind, 10, 40);
 }
@@ -250,7 +250,7 @@ TEST(RealStarts, GoOnFromACheckpoint) {
 // The next load step begins where the last two lead, and anchors are not to be had from positions to the last
 // bit.
 TEST(RealStarts, StaticLoadingGoesOnFromACheckpoint) {
-  const std::string path = kRoot + "/scenes/studies/fit_bar_scene.toml";
+  const std::string path = kTree + "/scenes/studies/fit_bar_scene.toml";
   for (const char* pull : {"\"moved\"", "\"moved_by_force\""}) {
     std::string text = read_text(path);
     text.replace(text.find("\"moved\""), 7, pull);
@@ -274,7 +274,7 @@ TEST(RealStarts, OnDevicesGoOnFromACheckpoint) {
         Of{"hot_cluster", gpu::Arithmetic::float64, {0, 0}, {0}},
         Of{"two_types", gpu::Arithmetic::float32, {0}, {0, 0}},
         Of{"failures/stiff_hold_healthy", gpu::Arithmetic::float64, {0}, {0}}}) {
-    const Bed bed = bed_of(read_scene(kRoot + "/scenes/" + scene + ".toml"));
+    const Bed bed = bed_of(read_scene(kTree + "/scenes/" + scene + ".toml"));
     const gpu::GpuChoice one{.arithmetic = arithmetic, .engine = {.devices = before}, .hooks = {}},
         other{.arithmetic = arithmetic, .engine = {.devices = after}, .hooks = {}};
     SCOPED_TRACE(scene);
@@ -289,7 +289,7 @@ TEST(RealStarts, OnDevicesGoOnFromACheckpoint) {
 
 // A checkpoint in the engine's own words may be a stranger's, who can make its hash right.
 TEST(RealStarts, OnDevicesRefuseWhatIsNotTheirs) {
-  const Bed bed = bed_of(read_scene(kRoot + "/scenes/hot_cluster.toml"));
+  const Bed bed = bed_of(read_scene(kTree + "/scenes/hot_cluster.toml"));
   const auto kind_of = [&](const gpu::GpuChoice& choice) {
     return gpu::gpu_kind(bed.scene, bed.plan, choice);
   };

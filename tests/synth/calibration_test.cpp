@@ -17,7 +17,7 @@
 namespace cuboct::synth {
 namespace {
 
-const Delays& ecp5() { return *delays_of(target_of("ecp5-25")); }
+const Delays& ecp5_delays() { return *delays_of(target_of("ecp5-25")); }
 
 // Rows of a file of synth/ by the names of its columns.
 using Row = std::map<std::string, std::string>;
@@ -68,7 +68,7 @@ Found fit(const std::vector<Row>& hops, const Wires& w, const std::string& but =
 }
 
 Wires with(const Found& found, double share) {
-  Wires w = ecp5().wires;
+  Wires w = ecp5_delays().wires;
   w.near = found.near;
   w.doubling = found.doubling;
   w.spread = found.spread;
@@ -82,7 +82,7 @@ Wires with(const Found& found, double share) {
 // ns from the pin by which a path comes into a cell to the one by which it leaves; of the last cell its
 // setup.
 double cell_delay(const std::string& type, const std::string& in, const std::string& out) {
-  for (const CellDelays& c : ecp5().cells) {
+  for (const CellDelays& c : ecp5_delays().cells) {
     if (!matches(c.cell, type)) continue;
     if (out == "-") {
       for (const auto& s : c.setups)
@@ -163,7 +163,7 @@ double share_of(const Found& found, const Paths& paths, const Placed& measured, 
 TEST(Calibration, WiresAreTheLeastSquaresOfTheMeasuredOnes) {
   const std::vector<Row> hops = rows_of("ecp5_hops.tsv");
   ASSERT_EQ(hops.size(), 30u);
-  const Wires& w = ecp5().wires;
+  const Wires& w = ecp5_delays().wires;
   const Found found = fit(hops, w);
   EXPECT_NEAR(found.near, w.near, 0.0006);
   EXPECT_NEAR(found.doubling, w.doubling, 0.0006);
@@ -178,7 +178,7 @@ TEST(Calibration, WiresAreTheLeastSquaresOfTheMeasuredOnes) {
 // The seven paths that were critical, by their kinds of wires: one wire is off by 0.4 ns, which a path of
 // several is not.
 TEST(Calibration, PlacedPathsAreTheSumsOfTheirWires) {
-  const Wires wires = with(fit(rows_of("ecp5_hops.tsv"), ecp5().wires), 1);
+  const Wires wires = with(fit(rows_of("ecp5_hops.tsv"), ecp5_delays().wires), 1);
   std::map<std::string, double> ns;
   for (const Row& hop : rows_of("ecp5_hops.tsv")) {
     bool taken = true;  // none of these is inside of a slice
@@ -197,7 +197,7 @@ TEST(Calibration, EstimatesAreThoseOfPlacedNodes) {
   const Placed measured = placed();
   ASSERT_EQ(measured.mean.size(), 4u);
   for (const auto& [scene, mean] : measured.mean) {
-    const double estimated = mhz(paths.at(scene), ecp5().wires);
+    const double estimated = mhz(paths.at(scene), ecp5_delays().wires);
     for (const double f : measured.seeds.at(scene)) EXPECT_NEAR(estimated / f, 1, 0.07) << scene;
     EXPECT_LE(estimated, 1.03 * mean) << scene;
   }
@@ -207,7 +207,7 @@ TEST(Calibration, EstimatesAreThoseOfPlacedNodes) {
 TEST(Calibration, TheLongestPathIsOfAKindThatWasCritical) {
   const Paths paths = near_critical();
   for (const auto& [scene, all] : paths) {
-    const std::vector<Row>& path = longest(all, ecp5().wires);
+    const std::vector<Row>& path = longest(all, ecp5_delays().wires);
     const std::string from = path.front().at("cell"), through = path.at(1).at("cell");
     if (scene == "coupon" || scene == "undamped_block") {
       EXPECT_EQ(from, "DP16KD") << scene;  // halos to the sender: lj_block, seed 2
@@ -222,8 +222,8 @@ TEST(Calibration, TheLongestPathIsOfAKindThatWasCritical) {
     double ns = 0;
     for (const auto& other : all)
       if (other.front().at("name").find(critical) != std::string::npos)
-        ns = std::max(ns, length(other, ecp5().wires));
-    EXPECT_GT(ns, 0.95 * length(path, ecp5().wires)) << scene;
+        ns = std::max(ns, length(other, ecp5_delays().wires));
+    EXPECT_GT(ns, 0.95 * length(path, ecp5_delays().wires)) << scene;
   }
 }
 
@@ -234,8 +234,8 @@ TEST(Calibration, LeavingANodeOut) {
   const Placed measured = placed();
   double worst = 0;
   for (const auto& [scene, mean] : measured.mean) {
-    const double estimated = mhz(paths.at(scene), ecp5().wires);
-    const Found found = fit(hops, ecp5().wires, scene);
+    const double estimated = mhz(paths.at(scene), ecp5_delays().wires);
+    const Found found = fit(hops, ecp5_delays().wires, scene);
     const double share = share_of(found, paths, measured, scene);
     const double without = mhz(paths.at(scene), with(found, share));
     worst = std::max(worst, std::abs(without / mean - 1));
@@ -246,8 +246,8 @@ TEST(Calibration, LeavingANodeOut) {
                measured.before.at(scene), estimated, 100 * (estimated / mean - 1), without,
                100 * (without / mean - 1));
   }
-  EXPECT_LT(worst, ecp5().error);
-  EXPECT_GT(worst, ecp5().error - 0.02);  // no more is claimed, and no less
+  EXPECT_LT(worst, ecp5_delays().error);
+  EXPECT_GT(worst, ecp5_delays().error - 0.02);  // no more is claimed, and no less
 }
 
 }  // namespace

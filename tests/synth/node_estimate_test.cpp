@@ -14,18 +14,18 @@ namespace {
 
 const std::string kRoot = CUBOCT_SOURCE_DIR;
 
-struct Row {
+struct NodeRow {
   std::string scene;
   double lut, ff, dsp, bram;
 };
 
-std::vector<Row> synthesised() {
+std::vector<NodeRow> synthesised() {
   std::ifstream in(kRoot + "/docs/measured/data/synth-nodes-ecp5-85.tsv");
-  std::vector<Row> rows;
+  std::vector<NodeRow> rows;
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with("#") || line.starts_with("node of")) continue;
     std::istringstream cells(line);
-    Row row;
+    NodeRow row;
     double nodes = 0, cycles = 0;
     cells >> row.scene >> nodes >> cycles >> row.lut >> row.ff >> row.dsp >> row.bram;
     rows.push_back(row);
@@ -37,7 +37,7 @@ TEST(NodeEstimate, SynthesisedNodesLieWithinTheBands) {
   const Target& target = target_of("ecp5-85");
   const auto rows = synthesised();
   ASSERT_EQ(rows.size(), 5U);
-  for (const Row& row : rows) {
+  for (const NodeRow& row : rows) {
     const Scene scene = read_scene(kRoot + "/scenes/" + row.scene + ".toml");
     const Plan plan = plan_of(scene, Arch());
     const auto node = estimate_node(plan, target);
