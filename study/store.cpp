@@ -234,6 +234,7 @@ Store::Store(const std::string& path, const Study& study) {
   try {
     impl_ = std::make_unique<Impl>(path, study);
     impl_->lock = lock;
+    impl_->database.check(kTables);
     // With a write-ahead log a row that was put survives the process; only a loss of power may take the last
     // ones.
     impl_->database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
@@ -339,6 +340,7 @@ int Store::add(const std::string& path) {
   const std::lock_guard guard(impl_->mutex);
   const Copy copied(path, impl_->path);
   const Database other(copied.path(), false, path);
+  other.check(kTables);
   std::string hash, machine;
   {
     Query row(other, "SELECT name, value FROM meta");
