@@ -29,7 +29,7 @@ class CMakeBuild(build_ext):
         built = next((BUILD / "python/cuboct").glob("_cuboct*.so"))
         place = Path(self.get_ext_fullpath(extension.name))
         self.copy_file(str(built), str(place))
-        for part in ("cuboct-mesh.so", "cuboct-read-mesh"):  # what the module looks for beside itself
+        for part in ("cuboct-mesh.so", "cuboct-read-mesh", "cuboct-read-trace"):  # what the module looks for beside itself
             if (BUILD / part).exists():
                 self.copy_file(str(BUILD / part), str(place.with_name(part)))
 

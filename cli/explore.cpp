@@ -94,6 +94,7 @@ int explore(const Options& options) {
   if (budget) check_budget(study, options.error, options.figure);
   if (!budget && !options.figure.empty()) throw InputError("--figure names the figure of --error E");
   const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
+  for (const std::string& file : options.add) study::Store::check(file, study);
   const DirectoryLock lock(out, "cuboct explore");
   study::Store store(out + "/results.db", study);
   catch_interrupts();

@@ -15,6 +15,7 @@
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "model/trace/guarded_trace.h"
 #include "model/trace/raster_plot.h"
 
 namespace cuboct {
@@ -66,7 +67,7 @@ void draw(const Options& options) {
                      "'cuboct run SCENE --out DIR' makes one");
   std::optional<DirectoryLock> lock;
   if (options.out.empty()) lock.emplace(options.directory, "cuboct picture");
-  const Rasters rasters = read_rasters(path);
+  const Rasters rasters = guarded_rasters(path);
   RasterPicture picture{field, frames_of(rasters, options.steps), options.limit, options.width};
   if (options.steps.empty()) picture.frames = spread_frames(rasters.frames.size());
   check_writable(out);

@@ -25,6 +25,7 @@
 #include "model/base/text.h"
 #include "model/trace/compare.h"
 #include "model/trace/cycles.h"
+#include "model/trace/guarded_trace.h"
 #include "model/trace/plot.h"
 #include "model/trace/raster_plot.h"
 
@@ -44,7 +45,7 @@ const Probe* first_tension(const Scene& scene, const Trace& trace) {
 std::optional<double> colour_limit(const std::string& directory) {
   const std::string rasters = directory + "/rasters.h5";
   if (!is_file(rasters)) return std::nullopt;
-  return usual_limit(read_rasters(rasters), Field::strain);
+  return usual_limit(guarded_rasters(rasters), Field::strain);
 }
 
 std::string pictures(const Loaded& loaded, const Shots& shots, const std::vector<size_t>& chosen,
@@ -242,7 +243,7 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
   std::sort(files.begin(), files.end());
   std::vector<Trace> traces;  // of this plan, with hashes
   for (const std::string& file : files) {
-    Trace trace = read_trace(file);
+    Trace trace = guarded_trace(file);
     const bool other = trace.plan_hash != loaded.setup.plan.hash;
     if (!other && !trace.state_hash.empty()) {
       traces.push_back(std::move(trace));
@@ -351,7 +352,7 @@ void write_report(const std::string& directory, const std::string& out) {
   input.stage = record.stage;
   input.from = record.from;
   const Loaded loaded = load_any(input, record.engine);
-  const Trace trace = read_trace(directory + "/trace.h5");
+  const Trace trace = guarded_trace(directory + "/trace.h5");
   const Plan& plan = loaded.setup.plan;
   if (trace.plan_hash != plan.hash)
     throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "model/base/error.h"
-#include "model/trace/trace.h"
+#include "model/trace/guarded_trace.h"
 
 namespace cuboct::gpu {
 
 void start_from(const std::string& path, Scene& scene) {
-  Trace trace = read_trace(path);
+  Trace trace = guarded_trace(path);
   if (trace.bodies.empty())
     throw InputError(fmt::format("--start {}: this trace holds no state in real numbers", path));
   RealFrame& frame = trace.bodies.back();

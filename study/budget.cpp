@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "model/base/error.h"
+#include "model/contract/places.h"
+#include "model/scene/config.h"
 #include "study/cost.h"
 #include "study/measure_errors.h"
 #include "study/measure_run.h"
@@ -170,9 +172,12 @@ BudgetAnswer keep_budget(const Study& study, const Truth& truth, Store& store,
   } catch (const NotchOrder& order) {
     const Axis& axis = answer.axes[order.axis];
     const auto notch = static_cast<size_t>(order.notch);
-    throw InputError(fmt::format("{}: [search]: '{}' of {} costs more than '{}' after it", study.path,
-                                 axis.labels[notch], axis.name, axis.labels[notch + 1]),
-                     "notches go from cheap to dear");
+    parse_config(read_config_text(study.path), study.path)
+        .places()
+        .fail({"search." + axis.name, "search"},
+              fmt::format("'{}' of {} costs more than '{}' after it", axis.labels[notch], axis.name,
+                          axis.labels[notch + 1]),
+              "notches go from cheap to dear");
   }
   for (const auto& c : answer.result.cheaper)
     answer.why.push_back(

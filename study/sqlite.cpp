@@ -3,13 +3,45 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
 #include "model/base/input_file.h"
 
 namespace cuboct::study {
+namespace {
+
+constexpr const char* kHint =
+    "'cuboct explore' makes such a file: remove this one and begin again, or take another";
+
+// Whatever blanks its author's source had.
+std::set<std::string> schema_of(const Database& database) {
+  std::set<std::string> found;
+  Query row(database,
+            "SELECT type || ' ' || name || ' ' || tbl_name || ' ' || ifnull(sql, '') FROM sqlite_schema");
+  while (row.next()) {
+    std::string text = row.text();
+    std::erase(text, ' ');
+    found.insert(text);
+  }
+  return found;
+}
+
+// SQLite would undo what a rollback journal says, and remove another file that the journal names. Ours have
+// a write-ahead log.
+void check_journal(const std::string& path) {
+  if (std::error_code none; std::filesystem::exists(path + "-journal", none))
+    throw InputError(fmt::format("{}-journal is not of cuboct, and would change {}", path, path),
+                     "remove it, or both files");
+}
+
+}  // namespace
 
 Database::Database(const std::string& path, bool writable, const std::string& name)
     : name_(name.empty() ? path : name) {
   check_is_file(path);
+  check_journal(path);
   const int flags = writable ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (sqlite3_open_v2(path.c_str(), &handle_, flags | SQLITE_OPEN_FULLMUTEX, nullptr) != SQLITE_OK) {
     const std::string text = fmt::format("cannot open {}: {}", name_, sqlite3_errmsg(handle_));
@@ -17,13 +49,15 @@ Database::Database(const std::string& path, bool writable, const std::string& na
     throw InputError(text);
   }
   sqlite3_busy_timeout(handle_, 10'000);
-  // Another's file may hold views and triggers; these run no function that does more than compute.
-  sqlite3_db_config(handle_, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
+  // Another's file may hold views and triggers, and functions in them.
+  for (const int refused :
+       {SQLITE_DBCONFIG_TRUSTED_SCHEMA, SQLITE_DBCONFIG_ENABLE_TRIGGER, SQLITE_DBCONFIG_ENABLE_VIEW})
+    sqlite3_db_config(handle_, refused, 0, nullptr);
+  sqlite3_db_config(handle_, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
+  sqlite3_exec(handle_, "PRAGMA cell_size_check = ON", nullptr, nullptr, nullptr);
 }
 
 void Database::fail() const {
-  constexpr const char* kHint =
-      "'cuboct explore' makes such a file: remove this one and begin again, or take another";
   switch (sqlite3_errcode(handle_)) {
     case SQLITE_NOTADB:
       throw InputError(fmt::format("{} holds no results of a study", name_), kHint);
@@ -38,6 +72,15 @@ void Database::fail() const {
 
 void Database::run(const std::string& sql) {
   if (sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK) fail();
+}
+
+void Database::check(const std::string& tables) const {
+  Database own(":memory:", true);
+  own.run(tables);
+  if (!std::ranges::includes(schema_of(own), schema_of(*this)))
+    throw InputError(fmt::format("{} holds no results of a study as cuboct keeps them", name_), kHint);
+  Query pages(*this, "PRAGMA quick_check(1)");
+  if (!pages.next() || pages.text() != "ok") throw InputError(fmt::format("{} is damaged", name_), kHint);
 }
 
 Query::Query(const Database& database, const std::string& sql) : database_(database) {

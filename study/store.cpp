@@ -207,6 +207,10 @@ void Store::Impl::check() {
   if (const std::string there = meta("study"); !there.empty() && there != hash)
     throw InputError("these are results of another study: its scene, arch, figures or times were others",
                      "take another directory, or remove this one's results.db");
+  // A file that is refused later stays as it is.
+  if (meta("study") == hash && meta("title") == study.title && meta("scene") == study.base.scene_path &&
+      !meta("machine").empty())
+    return;
   Query put(database,
             "INSERT OR REPLACE INTO meta VALUES('format', ?), ('study', ?), ('title', ?), ('scene', ?)");
   put.bind(kFormat).bind(hash).bind(study.title).bind(study.base.scene_path).done();
@@ -234,6 +238,7 @@ Store::Store(const std::string& path, const Study& study) {
   try {
     impl_ = std::make_unique<Impl>(path, study);
     impl_->lock = lock;
+    impl_->database.check(kTables);
     // With a write-ahead log a row that was put survives the process; only a loss of power may take the last
     // ones.
     impl_->database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
@@ -334,24 +339,47 @@ std::optional<Speed> Store::speed(const Settings& settings) const {
 
 bool Store::has_speed(const Settings& settings) const { return speed(settings).has_value(); }
 
-int Store::add(const std::string& path) {
-  if (access(path.c_str(), R_OK) != 0) throw InputError(fmt::format("cannot read {}", path));
-  const std::lock_guard guard(impl_->mutex);
-  const Copy copied(path, impl_->path);
-  const Database other(copied.path(), false, path);
-  std::string hash, machine;
-  {
-    Query row(other, "SELECT name, value FROM meta");
+namespace {
+
+// Another's results of the same study.
+class Other {
+ public:
+  Other(const std::string& path, const std::string& own, const Study& study)
+      : copied_((check_readable(path), path), own), database(copied_.path(), false, path) {
+    database.check(kTables);
+    std::string hash;
+    Query row(database, "SELECT name, value FROM meta");
     while (row.next()) {
       const std::string name = row.text();
       const std::string value = row.text();
       if (name == "study") hash = value;
       if (name == "machine") machine = value;
     }
+    if (hash != fmt::format("{:016x}", study.hash))
+      throw InputError(fmt::format(
+          "{} holds results of another study: its scene, arch, figures or times are others", path));
   }
-  if (hash != fmt::format("{:016x}", impl_->study.hash))
-    throw InputError(
-        fmt::format("{} holds results of another study: its scene, arch, figures or times are others", path));
+
+ private:
+  static void check_readable(const std::string& path) {
+    if (access(path.c_str(), R_OK) != 0) throw InputError(fmt::format("cannot read {}", path));
+  }
+  const Copy copied_;
+
+ public:
+  const Database database;
+  std::string machine;
+};
+
+}  // namespace
+
+void Store::check(const std::string& path, const Study& study) { Other(path, "", study); }
+
+int Store::add(const std::string& path) {
+  const std::lock_guard guard(impl_->mutex);
+  Other from(path, impl_->path, impl_->study);
+  const Database& other = from.database;
+  std::string machine = from.machine;
   if (machine == impl_->meta("machine")) machine.clear();  // a part of the study, computed beside it
   int came = 0;
   const auto copy = [&](const char* table, const std::string& columns, bool has_machine) {

@@ -52,6 +52,8 @@ class Store {
   // Rows of another store of the same scene, figures and times, measured elsewhere; what is here already
   // stays. Throws InputError. The number of rows that came.
   int add(const std::string& path);
+  // Whether it may come: throws as add() where it is no store of the study, and before there is one here.
+  static void check(const std::string& path, const Study& study);
 
   Results results() const;
 

@@ -1,15 +1,22 @@
 # `cmake --install build --strip --prefix DIR`: a directory for machines that have none of our packages. DIR/bin has
-# the programs that need no more than a shell, DIR/lib every shared library they load but glibc's, which comes with
-# each system and must be its own.
-set(installed cuboct)
-if(TARGET cuboct-gpu)
-  list(APPEND installed cuboct-gpu)
-endif()
+# the programs that need no more than a shell, and those that read strangers' files for them; DIR/lib every shared library
+# they load but glibc's, which comes with each system and must be its own.
+set(installed cuboct cuboct-read-trace)
+foreach(program cuboct-gpu cuboct-read-mesh)
+  if(TARGET ${program})
+    list(APPEND installed ${program})
+  endif()
+endforeach()
 foreach(program ${installed})
   # RPATH, not RUNPATH: it holds for what the libraries themselves load too.
   target_link_options(${program} PRIVATE -Wl,--disable-new-dtags)
   set_target_properties(${program} PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 endforeach()
+if(TARGET cuboct_mesh)  # loaded by name, from lib beside bin
+  target_link_options(cuboct_mesh PRIVATE -Wl,--disable-new-dtags)
+  set_target_properties(cuboct_mesh PROPERTIES INSTALL_RPATH "$ORIGIN")
+  install(TARGETS cuboct_mesh RUNTIME_DEPENDENCY_SET libraries LIBRARY DESTINATION lib)
+endif()
 install(TARGETS ${installed} RUNTIME_DEPENDENCY_SET libraries RUNTIME DESTINATION bin)
 install(RUNTIME_DEPENDENCY_SET libraries
   PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(c|m|mvec|dl|rt|pthread|resolv|util|anl)\\.so"

@@ -72,11 +72,21 @@ std::string InputError::json() const {
                      parts.hint.empty() ? "null" : json_text(parts.hint));
 }
 
-ErrorParts parts_of(const InputError& error) {
-  const std::string text = error.what();
+namespace {
+
+ErrorParts parts_of_text(const std::string& text) {
   const size_t at = text.find(kHint);
   return at == std::string::npos ? ErrorParts{text, ""}
                                  : ErrorParts{text.substr(0, at), text.substr(at + kHint.size())};
+}
+
+}  // namespace
+
+ErrorParts parts_of(const InputError& error) { return parts_of_text(error.what()); }
+
+InputError error_of(const std::string& text) {
+  const ErrorParts parts = parts_of_text(text);
+  return InputError(parts.message, parts.hint);
 }
 
 std::string bare_message(const InputError& error) {

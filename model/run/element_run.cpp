@@ -117,7 +117,11 @@ class SetRun {
     // A slice may lie on an end of that stretch: no rounding is to leave it out.
     const double edge = 1e-6 * slices.width();
     out.front = front_of(slices, now_.history, out.dt, pulse - edge, slices.length() - pulse + edge);
-    out.speed = speed_of(out.front);
+    try {
+      out.speed = speed_of(out.front);
+    } catch (const InputError& error) {
+      throw study_.places.placed(error.about({"mesh.size", "mesh.file", "mesh"}));
+    }
     double most = 0;
     for (const auto& row : now_.history)
       for (size_t s = row.size() / 4; s < row.size() * 3 / 4; ++s) most = std::max(most, std::abs(row[s]));

@@ -10,7 +10,7 @@
 #include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
 #include "model/scene/scene_parts.h"
-#include "model/trace/left_state.h"
+#include "model/trace/guarded_trace.h"
 #include "model/trace/trace_head.h"
 
 namespace cuboct {
@@ -76,7 +76,7 @@ void begin_at(Scene& scene, const std::string& directory) {
   if (!is_file(path))
     scene.places.fail({"start.from"}, fmt::format("{} holds no finished run: no file trace.h5", directory),
                       "'cuboct run SCENE --out DIR' leaves one");
-  LeftState left = read_left_state(path);
+  LeftState left = guarded_left_state(path);
   check_alike(scene, left, directory);
 
   scene.packed = std::make_shared<Body>(scene.body);

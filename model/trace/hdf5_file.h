@@ -489,6 +489,11 @@ class Reader {
     if (H5Pget_layout(properties) == H5D_VIRTUAL || H5Pget_external_count(properties) != 0)
       throw InputError(fmt::format("{}: '{}' takes its values from another file", path_, name),
                        "a trace of cuboct holds all of its values");
+    for (int k = 0, count = H5Pget_nfilters(properties); k < count; ++k)
+      if (const H5Z_filter_t filter = filter_at(properties, k);
+          filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE)
+        throw InputError(fmt::format("{}: '{}' is packed by filter {} of HDF5", path_, name, filter),
+                         "a trace of cuboct is shuffled (2) and deflated (1): h5repack can make it so");
     return data;
   }
   Handle dataset(hid_t where, const std::string& name) const {
@@ -509,6 +514,11 @@ class Reader {
       throw InputError(
           fmt::format("{} is damaged: '{}' says that it has {} values, and the file does not hold them",
                       path_, name, fmt::join(shape, " x ")));
+  }
+  static H5Z_filter_t filter_at(hid_t properties, int k) {
+    size_t values = 0;
+    unsigned flags = 0, can = 0;
+    return H5Pget_filter2(properties, static_cast<unsigned>(k), &flags, &values, nullptr, 0, nullptr, &can);
   }
   void check_link(hid_t where, const std::string& name, const std::string& kind) const {
     H5L_info_t info;

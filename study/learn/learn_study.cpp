@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -189,6 +190,17 @@ void check_columns(const ConfigTable& grid, const GridInput& input) {
 
 namespace {
 
+// A bond reaches from a point to another one, and not around the grid to itself.
+void check_horizons(const ConfigTable& root, const LearnStudy& study) {
+  const double widest = *std::ranges::max_element(study.kernel.horizons);
+  if (2 * widest < study.grid.points) return;
+  const auto kernel = root.table_at("kernel");
+  const ConfigValue at =
+      kernel && kernel->has("horizons") ? kernel->at("horizons") : root.at("grid").table().at("points");
+  at.fail(fmt::format("a horizon of {:g} spacings meets itself around {} points", widest, study.grid.points),
+          "more points, or a smaller horizon");
+}
+
 LearnStudy learn_study_of(const ConfigTable& root, const std::string& path) {
   LearnStudy out;
   out.path = path;
@@ -198,6 +210,7 @@ LearnStudy learn_study_of(const ConfigTable& root, const std::string& path) {
   out.grid = read_grid(table("grid"));
   out.still = read_static(table("static"), out.sheet);
   if (const auto kernel = root.table_at("kernel")) out.kernel = read_kernel(*kernel);
+  check_horizons(root, out);
   const auto fracture = root.table_at("fracture"), stretch = root.table_at("stretch"),
              prediction = root.table_at("prediction");
   if (fracture) {

@@ -8,6 +8,8 @@
 
 #include "model/base/error.h"
 #include "model/bond_order/atom_motion.h"
+#include "model/contract/places.h"
+#include "model/scene/config.h"
 #include "study/learn/samples.h"
 
 namespace cuboct::learn {
@@ -113,8 +115,13 @@ StaticSample rest_under(const LearnStudy& study, const AtomCell& sheet, const St
   std::vector<Vec3> x = sheet.x, b = forces;
   for (size_t i = 0; i < x.size(); ++i)
     x[i] *= kAngstrom, u[i] *= kAngstrom, b[i] *= kElectronVolt / kAngstrom;
-  const CoarseGrain grain(grid.coarse(true), x, std::vector<double>(x.size(), 1));
-  out.u = grain.linear_mean(u), out.b = grain.density_of(b);
+  try {
+    const CoarseGrain grain(grid.coarse(true), x, std::vector<double>(x.size(), 1));
+    out.u = grain.linear_mean(u), out.b = grain.density_of(b);
+  } catch (const InputError& error) {
+    const ConfigTable file = parse_config(read_config_text(study.path), study.path);
+    throw file.places().placed(error.about({"grid.radius", "grid.points"}));
+  }
   return out;
 }
 

@@ -8,7 +8,7 @@ import mutate
 from shop import KEPT
 from sound import (BAR, CURVE, FIT, GMSH, LEARN, LONG_RUN, MACHINES, MESH_SCENE, MULTISCALE, POTENTIAL_FIT, SMALL_SCENE, STUDIES, STUDY,
                    TERSOFF_SCENE, WAVE)
-from stores import rehashed, spoilt_database
+from stores import rehashed, spoilt_database, spoilt_heads
 
 
 @dataclasses.dataclass
@@ -180,11 +180,16 @@ class Kinds:
     def run_directory(self, rng):
         """What `run --out` left, read by others."""
         start = SMALL_SCENE + b"[start]\nfrom = \"run\"\n"
-        return self.from_shop(
+        case = self.from_shop(
             rng, "run", "in/run", ["trace.h5"] * 6 + ["rasters.h5"] * 3 + ["run.toml", "summary.json", "plan.txt", "frames.xyz"], (".h5",),
             {"in/scene.toml": SMALL_SCENE, "in/start.toml": start},
             [["report", "in/run", "--out", "out.html"], ["picture", "in/run", "--out", "out.png"], ["run", "in/scene.toml", "--steps", "2", "--quiet", "--from", "in/run", "--out", "out"],
              ["check", "in/scene.toml", "--from", "in/run"], ["picture", "in/run", "--out", "out.png", "--field", "speed", "--steps", "0,24"]])
+        spoilt = case.ways[-1]
+        if spoilt.endswith(".h5") and rng.random() < 0.6:
+            case.files[spoilt] = spoilt_heads(self.shop["run"][spoilt.removeprefix("in/run/")], rng)
+            case.ways = ["heads", spoilt]
+        return case
 
     def checkpoint(self, rng):
         """A run that was cut, and goes on. A third of the checkpoints have words changed and their hash made anew."""

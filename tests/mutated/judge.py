@@ -31,7 +31,7 @@ NOWHERE = re.compile(
     r"holds no run|is not a file|no such file|is a directory|cannot (read|write|make|open)|memory|disk|belongs to|made by another|"
     r"already|this file is in|another study|another fit|another scene|unknown option|has no frames|no checkpoint|"
     r"left out|the value of|argument \d+ of|is required|excludes|requires|"
-    r"^--|: --|in doubles|particles: '|\[search\]: |has no atom within|meets itself|the front passed|interrupted")
+    r"^--|: --|in doubles|particles: '|interrupted")
 
 
 def refusal(text, placed, as_json):

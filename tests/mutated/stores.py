@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Ways to spoil files that only a program writes: checkpoints and databases."""
+"""Ways to spoil files that only a program writes: checkpoints, traces and databases."""
+import re
 import sqlite3
 import struct
 import tempfile
@@ -22,6 +23,39 @@ def rehashed(data, rng):
         z = (z ^ z >> 27) * 0x94d049bb133111eb & mask
         value = z ^ z >> 31
     return struct.pack(f"<{len(words) + 1}Q", *words, value)
+
+
+def heads_of(data):
+    """Where HDF5 has what it says of data: superblock, B-trees, heaps, symbol tables, and the object headers that those name."""
+    places = [0] + [match.start() for match in re.finditer(rb"TREE|HEAP|SNOD|GCOL", data)]
+    for table in [place for place in places if data[place:place + 4] == b"SNOD"]:
+        for k in range(struct.unpack_from("<H", data, table + 6)[0]):
+            places.append(struct.unpack_from("<Q", data, table + 8 + 40 * k + 8)[0])
+    return [place for place in places if place < len(data) - 16]
+
+
+def spoilt_heads(data, rng):
+    """An HDF5 file that is spoilt where most bytes meet its reader: a byte, a word that says too much, another's address."""
+    places, out = heads_of(data), bytearray(data)
+    for _ in range(rng.choice([1, 1, 1, 2, 4])):
+        at = min(rng.choice(places) + rng.randrange(rng.choice([24, 100, 400])), len(out) - 8)
+        way = rng.choice(["bit", "byte", "word", "word", "address", "swap"])
+        if way == "bit":
+            out[at] ^= 1 << rng.randrange(8)
+        elif way == "byte":
+            out[at] = rng.choice([0, 1, 2, 3, 4, 8, 16, 127, 128, 255, rng.randrange(256)])
+        elif way == "word":
+            size = rng.choice([2, 4, 8])
+            at -= at % size if rng.random() < 0.8 else 0
+            top = 1 << 8 * size
+            word = rng.choice([0, 1, top - 1, top >> 1, (top >> 1) - 1, len(data), len(data) - 1, rng.randrange(256), rng.randrange(top)]) % top
+            out[at:at + size] = word.to_bytes(size, "little")
+        elif way == "address":
+            out[at:at + 8] = struct.pack("<Q", rng.choice(places))
+        else:
+            other = rng.choice(places)
+            out[at - at % 8:at - at % 8 + 8] = data[other:other + 8]
+    return bytes(out)
 
 
 def spoilt_database(data, rng):

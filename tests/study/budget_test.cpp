@@ -337,7 +337,7 @@ TEST_F(Budget, NotchesOutOfOrder) {
   Store memory = store(s);
   EXPECT_EQ(message([&] { keep_budget(s, truth, memory, question(0.05)); }),
             s.path +
-                ": [search]: '9' of index_bits costs more than '6' after it\n"
+                ":22:14: '9' of index_bits costs more than '6' after it\n"
                 "  hint: notches go from cheap to dear");
 }
 

@@ -238,6 +238,95 @@ TEST(Store, SaysOfAFileThatItIsNone) {
   EXPECT_EQ(refusal(whole), name + " is damaged" + hint);
 }
 
+// What SQLite would run, or never come to the end of.
+TEST(Store, RunsNothingThatAnothersFileSays) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db"), other = files.path("other.db");
+  { const Store store(other, study); }
+  const std::string whole = read_text(other);
+  const auto opened = [&](const std::function<void()>& change) {
+    std::ofstream(other, std::ios::binary) << whole;
+    change();
+    std::string told[2];
+    for (const bool added : {true, false}) {
+      try {
+        Store store(added ? path : other, study);
+        if (added) store.add(other);
+        told[added] = "taken";
+      } catch (const InputError& error) {
+        told[added] = error.what();
+      }
+    }
+    EXPECT_EQ(told[0], told[1]);
+    std::filesystem::remove(other + "-journal");
+    return told[0];
+  };
+  const std::string hint =
+      "\n  hint: 'cuboct explore' makes such a file: remove this one and begin again, or take another";
+  EXPECT_EQ(opened([] {}), "taken");
+  for (const char* schema :
+       {"CREATE VIEW more AS SELECT 1", "CREATE TRIGGER t AFTER INSERT ON meta BEGIN DELETE FROM points; END",
+        "CREATE INDEX i ON points(hex(zeroblob(length(numbers))))",
+        "ALTER TABLE points ADD COLUMN more TEXT AS (hex(zeroblob(1000)))",
+        "DROP TABLE figures; CREATE VIEW figures AS WITH RECURSIVE r(k) AS (SELECT 1 UNION ALL SELECT k + 1 "
+        "FROM r) SELECT k AS numbers, k AS figure, 'a' AS name, k AS value, k AS error FROM r"})
+    EXPECT_EQ(opened([&] { rows(other, schema); }),
+              other + " holds no results of a study as cuboct keeps them" + hint)
+        << schema;
+  // Behind the root of `meta` eight levels of pages. Each is the child of the one before, sixty-one times:
+  // 10^14 rows.
+  EXPECT_EQ(opened([&] {
+              const auto number = [&](const char* sql) {
+                return static_cast<size_t>(std::stoul(rows(other, sql)));
+              };
+              const size_t root = number("SELECT rootpage FROM sqlite_schema WHERE name = 'meta'");
+              const size_t size = number("PRAGMA page_size"), levels = 8;
+              std::string bytes = read_text(other);
+              const size_t pages = bytes.size() / size;
+              const auto put = [](std::string& to, size_t at, size_t width, size_t value) {
+                for (size_t k = 0; k < width; ++k)
+                  to[at + k] = static_cast<char>(value >> 8 * (width - 1 - k));
+              };
+              const std::string leaf = bytes.substr((root - 1) * size, size);
+              for (size_t level = 0; level < levels; ++level) {
+                const size_t child = pages + level + 1;
+                std::string page(size, '\0');
+                page[0] = 5;  // of a table, with children
+                put(page, 3, 2, 60), put(page, 5, 2, size - 300), put(page, 8, 4, child);
+                for (size_t cell = 0; cell < 60; ++cell) {
+                  const size_t at = size - 300 + 5 * cell;
+                  put(page, 12 + 2 * cell, 2, at), put(page, at, 4, child), put(page, at + 4, 1, cell + 1);
+                }
+                if (level == 0)
+                  bytes.replace((root - 1) * size, size, page);
+                else
+                  bytes += page;
+              }
+              bytes += leaf;
+              put(bytes, 28, 4, pages + levels);
+              std::ofstream(other, std::ios::binary) << bytes;
+            }),
+            other + " is damaged" + hint);
+}
+
+// Of a store to go on with: what its journal says would be undone, and a file that it names be removed.
+TEST(Store, AStrangersJournalIsRefused) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db");
+  { const Store store(path, study); }
+  std::ofstream(path + "-journal") << "journal";
+  try {
+    const Store store(path, study);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()), path + "-journal is not of cuboct, and would change " + path +
+                                             "\n  hint: remove it, or both files");
+  }
+  EXPECT_EQ(read_text(path + "-journal"), "journal");
+}
+
 // Of a store that was killed: rows that stand in its log alone come too, and nothing is left beside it.
 TEST(Store, TakesInRowsWithoutATrace) {
   namespace fs = std::filesystem;
