@@ -8,19 +8,17 @@
 #include <string>
 
 #include "cli/items.h"
+#include "hw/program/options.h"
 #include "model/base/error.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
 
 namespace cuboct {
 
 struct Answer {
   bool json = false;
 
-  CLI::Option* add_to(CLI::App& command);  // --json
+  void add_to(Command& command) {
+    command.flag("--json", json, "print one JSON document instead of lines for people");
+  }
 
   // For people alone.
   template <typename... Args>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <functional>
@@ -8,6 +7,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/json.h"
 #include "model/base/spelling.h"
@@ -101,25 +101,25 @@ int bench(const Options& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, int& exit_code) {
+void add_bench(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("bench", "measure how fast the engines are");
-  command->add_option("name", options->name, "a benchmark, or the first words of some; default: all")
-      ->type_name("NAME");
-  command->add_flag("--list", options->list, "name the benchmarks");
-  options->answer.add_to(*command);
-  command->add_option("--threads", options->threads, "threads of 'all cores'; default: every core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_option("--repeats", options->length.repeats, "of which the median is told")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str()
-      ->type_name("N");
-  command->add_option("--seconds", options->length.seconds, "length of a repeat, but where steps are given")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->capture_default_str()
-      ->type_name("T");
-  command->callback([options, &exit_code] { exit_code = bench(*options); });
+  Command command = app.command("bench", "measure how fast the engines are");
+  command.option("name", options->name, "a benchmark, or the first words of some; default: all")
+      .type_name("NAME");
+  command.flag("--list", options->list, "name the benchmarks");
+  options->answer.add_to(command);
+  command.option("--threads", options->threads, "threads of 'all cores'; default: every core")
+      .range(1, 4096)
+      .type_name("N");
+  command.option("--repeats", options->length.repeats, "of which the median is told")
+      .range(1, 1000)
+      .show_default()
+      .type_name("N");
+  command.option("--seconds", options->length.seconds, "length of a repeat, but where steps are given")
+      .range(1e-3, 1e4)
+      .show_default()
+      .type_name("T");
+  command.callback([options, &exit_code] { exit_code = bench(*options); });
 }
 
 }  // namespace cuboct

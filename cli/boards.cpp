@@ -2,7 +2,6 @@
 #include "cli/boards.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "cli/estimate.h"
 #include "cli/machine_cycles.h"
 #include "cli/technologies.h"
+#include "hw/program/options.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/spelling.h"
@@ -172,34 +172,28 @@ const CountedPartition& BoardsFindings::fastest() const {
       rows, {}, [](const CountedPartition& row) { return std::pair(row.cycles, row.devices); });
 }
 
-void add_boards(CLI::App& app, int& exit_code) {
+void add_boards(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("boards", "cuts a scene's machine into devices: pins, latency, exact cycles");
-  options->input.add_to(*command);
-  command->add_option("--device", options->device, "FPGA to fill; a node is synthesised for it")
-      ->type_name("NAME");
-  command->add_option("--nodes", options->nodes, "nodes that a device holds, instead of --device")
-      ->check(whole_number())
-      ->type_name("N");
-  command->add_option("--box", options->box, "nodes of a device along x, y and z: this box alone")
-      ->delimiter(',')
-      ->expected(3)
-      ->type_name("X,Y,Z");
-  command->add_option("--link", options->link, "kind of link between devices")
-      ->type_name("KIND")
-      ->capture_default_str();
-  command->add_option("--links", options->links, "file of kinds; default: the built-in ones")
-      ->type_name("FILE");
-  command->add_option("--clock", options->clock, "of the machine")->type_name("F")->capture_default_str();
-  command->add_option("--most", options->most, "devices at the most")->check(whole_number())->type_name("N");
-  command->add_option("--steps", options->steps, "steps to count; default: 20, fewer if very many particles")
-      ->check(whole_number())
-      ->type_name("N");
-  command->add_option("--write", options->write, "writes the arch with [boards] of the fastest")
-      ->type_name("FILE");
-  command->add_flag("--json", options->json, "print one JSON document instead of lines for people");
-  command->callback([options, &exit_code] { exit_code = boards(*options); });
+  Command command = app.command("boards", "cuts a scene's machine into devices: pins, latency, exact cycles");
+  options->input.add_to(command);
+  command.option("--device", options->device, "FPGA to fill; a node is synthesised for it").type_name("NAME");
+  command.option("--nodes", options->nodes, "nodes that a device holds, instead of --device")
+      .check(whole_number)
+      .type_name("N");
+  command.option("--box", options->box, "nodes of a device along x, y and z: this box alone")
+      .delimiter(',')
+      .length(3)
+      .type_name("X,Y,Z");
+  command.option("--link", options->link, "kind of link between devices").type_name("KIND").show_default();
+  command.option("--links", options->links, "file of kinds; default: the built-in ones").type_name("FILE");
+  command.option("--clock", options->clock, "of the machine").type_name("F").show_default();
+  command.option("--most", options->most, "devices at the most").check(whole_number).type_name("N");
+  command.option("--steps", options->steps, "steps to count; default: 20, fewer if very many particles")
+      .check(whole_number)
+      .type_name("N");
+  command.option("--write", options->write, "writes the arch with [boards] of the fastest").type_name("FILE");
+  command.flag("--json", options->json, "print one JSON document instead of lines for people");
+  command.callback([options, &exit_code] { exit_code = boards(*options); });
 }
 
 }  // namespace cuboct

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 
 #include <array>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "hw/cycles.h"
 #include "hw/left_out.h"
 #include "hw/node_area.h"
+#include "hw/program/options.h"
 #include "model/analysis/motion.h"
 #include "model/analysis/synopsis.h"
 #include "model/base/quantity_text.h"
@@ -249,19 +249,19 @@ Items stages_in(Input& input) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int&) {
+void add_check(Command& app, int&) {
   struct Options {
     Input input;
     bool machine = false;
     Answer answer;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("check", "read a scene and print what a run of it does and takes");
-  options->input.add_to(*command);
-  options->input.add_start_to(*command);
-  command->add_flag("--machine", options->machine, "print what would be built: formats, records, cycles");
-  options->answer.add_to(*command);
-  command->callback([options] {
+  Command command = app.command("check", "read a scene and print what a run of it does and takes");
+  options->input.add_to(command);
+  options->input.add_start_to(command);
+  command.flag("--machine", options->machine, "print what would be built: formats, records, cycles");
+  options->answer.add_to(command);
+  command.callback([options] {
     const Items stages = stages_in(options->input);
     const Loaded loaded = options->machine ? load(options->input) : load_any(options->input, "");
     Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);

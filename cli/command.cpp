@@ -2,50 +2,44 @@
 #include "cli/command.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <charconv>
 
+#include "hw/program/options.h"
 #include "model/run/start.h"
 
 namespace cuboct {
 
-void Input::add_to(CLI::App& command) {
-  command.add_option("scene", scene, "scene file (TOML)")->required()->type_name("SCENE");
-  command.add_option("--arch", arch, "machine description (TOML)")->type_name("FILE");
+void Input::add_to(Command& command) {
+  command.option("scene", scene, "scene file (TOML)").required().type_name("SCENE");
+  command.option("--arch", arch, "machine description (TOML)").type_name("FILE");
 }
 
-void Input::add_start_to(CLI::App& command) {
-  command.add_option("--stage", stage, "of a scene with [[stage]]: the one to take")->type_name("NAME");
-  command.add_option("--from", from, "directory of a run: begin with the last state that it left")
-      ->type_name("DIR");
+void Input::add_start_to(Command& command) {
+  command.option("--stage", stage, "of a scene with [[stage]]: the one to take").type_name("NAME");
+  command.option("--from", from, "directory of a run: begin with the last state that it left")
+      .type_name("DIR");
 }
 
-void Input::add_stalls_to(CLI::App& command) {
+void Input::add_stalls_to(Command& command) {
   command
-      .add_option(
-          "--stall-rate", stall_rate,
-          "share of cycles in which a link of systemc or rtl passes nothing: cycles change, bits do not")
-      ->check(CLI::Range(0.0, 0.99))
-      ->type_name("R");
-  command.add_option("--stall-seed", stall_seed, "seed of the stalls")->check(whole_number())->type_name("N");
+      .option("--stall-rate", stall_rate,
+              "share of cycles in which a link of systemc or rtl passes nothing: cycles change, bits do not")
+      .range(0.0, 0.99)
+      .type_name("R");
+  command.option("--stall-seed", stall_seed, "seed of the stalls").check(whole_number).type_name("N");
   command
-      .add_option("--inject-faults", faults,
-                  "change, lose or repeat beats on the links of systemc or rtl: their share, or their number")
-      ->type_name("X");
-  command.add_option("--fault-seed", fault_seed, "seed of the faults")->check(whole_number())->type_name("N");
+      .option("--inject-faults", faults,
+              "change, lose or repeat beats on the links of systemc or rtl: their share, or their number")
+      .type_name("X");
+  command.option("--fault-seed", fault_seed, "seed of the faults").check(whole_number).type_name("N");
 }
 
-CLI::Validator whole_number() {
-  return CLI::Validator(
-      [](std::string& text) {
-        int64_t value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool whole =
-            error == std::errc() && end == text.data() + text.size() && value >= 0 && text[0] != '-';
-        return whole ? std::string() : fmt::format("'{}' is not a whole number below 2^63", text);
-      },
-      "");
+std::string whole_number(const std::string& text) {
+  int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size() && value >= 0 && text[0] != '-';
+  return whole ? std::string() : fmt::format("'{}' is not a whole number below 2^63", text);
 }
 
 Loaded load(const Input& input) {

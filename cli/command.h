@@ -7,31 +7,27 @@
 
 #include "hw/setup.h"
 
-// Its header costs each file that reads it four seconds: those that add options do.
-namespace CLI {
-class App;
-class Validator;
-}  // namespace CLI
-
 namespace cuboct {
 
-void add_new(CLI::App& app, int& exit_code);
-void add_check(CLI::App& app, int& exit_code);
-void add_run(CLI::App& app, int& exit_code);
-void add_crosscheck(CLI::App& app, int& exit_code);
-void add_emit(CLI::App& app, int& exit_code);
-void add_synth(CLI::App& app, int& exit_code);
-void add_explore(CLI::App& app, int& exit_code);
-void add_fit(CLI::App& app, int& exit_code);
-void add_elastic(CLI::App& app, int& exit_code);
-void add_energy(CLI::App& app, int& exit_code);
-void add_boards(CLI::App& app, int& exit_code);
-void add_bench(CLI::App& app, int& exit_code);
-void add_picture(CLI::App& app, int& exit_code);
-void add_report(CLI::App& app, int& exit_code);
-void add_multiscale(CLI::App& app, int& exit_code);
-void add_pitch(CLI::App& app, int& exit_code);
-void add_stability(CLI::App& app, int& exit_code);
+class Command;
+
+void add_new(Command& app, int& exit_code);
+void add_check(Command& app, int& exit_code);
+void add_run(Command& app, int& exit_code);
+void add_crosscheck(Command& app, int& exit_code);
+void add_emit(Command& app, int& exit_code);
+void add_synth(Command& app, int& exit_code);
+void add_explore(Command& app, int& exit_code);
+void add_fit(Command& app, int& exit_code);
+void add_elastic(Command& app, int& exit_code);
+void add_energy(Command& app, int& exit_code);
+void add_boards(Command& app, int& exit_code);
+void add_bench(Command& app, int& exit_code);
+void add_picture(Command& app, int& exit_code);
+void add_report(Command& app, int& exit_code);
+void add_multiscale(Command& app, int& exit_code);
+void add_pitch(Command& app, int& exit_code);
+void add_stability(Command& app, int& exit_code);
 
 // What `cuboct --version` prints.
 std::string version_text();
@@ -47,13 +43,13 @@ struct Input {
   std::string faults{};  // on the links of such an engine: hw/link_code.h, read_fault_share; empty: none
   uint64_t fault_seed = 1;
 
-  void add_to(CLI::App& command);
-  void add_start_to(CLI::App& command);   // --stage, --from
-  void add_stalls_to(CLI::App& command);  // for commands that run such engines
+  void add_to(Command& command);
+  void add_start_to(Command& command);   // --stage, --from
+  void add_stalls_to(Command& command);  // for commands that run such engines
 };
 
-// Accepts 0 ... 2^63 - 1, in decimal digits alone.
-CLI::Validator whole_number();
+// What is wrong with a value that is not of 0 ... 2^63 - 1 in decimal digits alone: of Option::check.
+std::string whole_number(const std::string& text);
 
 // A scene with its machine.
 struct Loaded {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/engines.h"
+#include "hw/program/options.h"
 #include "model/analysis/meter.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
@@ -304,33 +304,30 @@ int crosscheck(const Options& options) {
 
 }  // namespace
 
-void add_crosscheck(CLI::App& app, int& exit_code) {
+void add_crosscheck(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("crosscheck", "run a scene in several engines and compare every bit");
-  options->input.add_to(*command);
-  options->input.add_start_to(*command);
-  options->input.add_stalls_to(*command);
-  options->choice.add_machines(*command);
-  command->add_option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
-      ->delimiter(',')
-      ->type_name("A,B,...");
+  Command command = app.command("crosscheck", "run a scene in several engines and compare every bit");
+  options->input.add_to(command);
+  options->input.add_start_to(command);
+  options->input.add_stalls_to(command);
+  options->choice.add_machines(command);
+  command.option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
+      .delimiter(',')
+      .type_name("A,B,...");
   command
-      ->add_option("--precision", options->choice.precision,
-                   "float (default) or double: the numbers of gpu against reference, within bounds")
-      ->check(CLI::IsMember({"float", "double"}));
-  auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
-                    ->check(whole_number())
-                    ->type_name("N");
+      .option("--precision", options->choice.precision,
+              "float (default) or double: the numbers of gpu against reference, within bounds")
+      .one_of({"float", "double"});
+  command.option("--steps", options->steps, "steps; default: the scene's")
+      .check(whole_number)
+      .type_name("N")
+      .given(options->steps_given);
   command
-      ->add_option("--out", options->out,
-                   "directory that keeps each engine's trace; of a scene of stages, a directory each")
-      ->type_name("DIR");
-  options->answer.add_to(*command);
-  command->callback([options, steps, &exit_code] {
-    options->steps_given = steps->count() > 0;
-    exit_code = crosscheck(*options);
-  });
+      .option("--out", options->out,
+              "directory that keeps each engine's trace; of a scene of stages, a directory each")
+      .type_name("DIR");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { exit_code = crosscheck(*options); });
 }
 
 }  // namespace cuboct

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "cli/command.h"
 #include "cli/elastic_text.h"
+#include "hw/program/options.h"
 #include "model/analysis/scene_cell.h"
 #include "model/analysis/strained_cell.h"
 #include "model/base/interrupt.h"
@@ -156,38 +156,31 @@ int elastic(const Options& options) {
 
 }  // namespace
 
-void add_elastic(CLI::App& app, int& exit_code) {
+void add_elastic(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("elastic", "elastic constants, by lattice sums and by strained simulation");
-  command->add_option("scene", options->scene, "scene file (TOML)")->type_name("SCENE");
-  command->add_option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]")
-      ->type_name("KEYS");
-  command->add_option("--pitch", options->pitch, "of --law: distance of nearest particles, or relaxed")
-      ->type_name("P");
-  command->add_option("--density", options->density, "of --law, with its unit")->type_name("D");
-  command->add_flag("--reduced", options->reduced, "quantities of --law are plain numbers, the mass is 1");
+  Command command = app.command("elastic", "elastic constants, by lattice sums and by strained simulation");
+  command.option("scene", options->scene, "scene file (TOML)").type_name("SCENE");
+  command.option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]")
+      .type_name("KEYS");
+  command.option("--pitch", options->pitch, "of --law: distance of nearest particles, or relaxed")
+      .type_name("P");
+  command.option("--density", options->density, "of --law, with its unit").type_name("D");
+  command.flag("--reduced", options->reduced, "quantities of --law are plain numbers, the mass is 1");
+  command.option("--material", options->material, "of a scene whose box does not repeat; default: the first")
+      .type_name("NAME");
+  command.flag("--relaxed", options->relaxed, "first strain the cell until it carries no stress");
+  command.option("--strain", options->strain, "of the strained simulations").type_name("E").show_default();
+  command.option("--layers", options->layers, "also the modulus along x of slabs of 2 to N layers across z")
+      .range(2, kMostLayers)
+      .type_name("N");
   command
-      ->add_option("--material", options->material,
-                   "of a scene whose box does not repeat; default: the first")
-      ->type_name("NAME");
-  command->add_flag("--relaxed", options->relaxed, "first strain the cell until it carries no stress");
-  command->add_option("--strain", options->strain, "of the strained simulations")
-      ->type_name("E")
-      ->capture_default_str();
-  command
-      ->add_option("--layers", options->layers, "also the modulus along x of slabs of 2 to N layers across z")
-      ->check(CLI::Range(2, kMostLayers))
-      ->type_name("N");
-  command
-      ->add_option("--polar", options->polar,
-                   "draw Young's modulus against direction in the x-y plane (svg, png)")
-      ->type_name("FILE");
-  command->add_option("--threads", options->threads, "of the simulations; default: 1")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_flag("--json", options->json, "print as JSON");
-  command->callback([options, &exit_code] { exit_code = elastic(*options); });
+      .option("--polar", options->polar, "draw Young's modulus against direction in the x-y plane (svg, png)")
+      .type_name("FILE");
+  command.option("--threads", options->threads, "of the simulations; default: 1")
+      .range(1, 4096)
+      .type_name("N");
+  command.flag("--json", options->json, "print as JSON");
+  command.callback([options, &exit_code] { exit_code = elastic(*options); });
 }
 
 }  // namespace cuboct

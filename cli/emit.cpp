@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <memory>
 
@@ -9,6 +8,7 @@
 #include "cli/estimate.h"
 #include "cli/machine_cycles.h"
 #include "cli/stages.h"
+#include "hw/program/options.h"
 #include "hw/rtl_emit.h"
 #include "hw/rtl_prefix.h"
 #include "model/base/json.h"
@@ -118,52 +118,50 @@ void emit(Options options) {
 
 }  // namespace
 
-void add_emit(CLI::App& app, int&) {
+void add_emit(Command& app, int&) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("emit", "write the scene's machine as a self-contained RTL project");
-  options->input.add_to(*command);
-  options->input.add_start_to(*command);
-  command->add_option("--out", options->out, "directory, new or of an earlier emission")
-      ->required()
-      ->type_name("DIR");
+  Command command = app.command("emit", "write the scene's machine as a self-contained RTL project");
+  options->input.add_to(command);
+  options->input.add_start_to(command);
+  command.option("--out", options->out, "directory, new or of an earlier emission")
+      .required()
+      .type_name("DIR");
   command
-      ->add_option("--vector-steps", options->emission.vector_steps,
-                   "steps of golden that the project's bench checks")
-      ->check(whole_number())
-      ->type_name("N")
-      ->capture_default_str();
+      .option("--vector-steps", options->emission.vector_steps,
+              "steps of golden that the project's bench checks")
+      .check(whole_number)
+      .type_name("N")
+      .show_default();
   command
-      ->add_option(
-          "--fit", options->fit,
-          "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
-          "hx8k, ecp5-25, ecp5-85 or xc7")
-      ->type_name("TARGET");
-  auto* board = command
-                    ->add_option("--board", options->emission.board.name,
-                                 "add a top module, pins and a host link: icebreaker or ulx3s")
-                    ->type_name("B");
-  command->add_option("--baud", options->emission.board.baud, "bits per second of the board's serial line")
-      ->needs(board)
-      ->capture_default_str()
-      ->type_name("N");
+      .option("--fit", options->fit,
+              "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
+              "hx8k, ecp5-25, ecp5-85 or xc7")
+      .type_name("TARGET");
+  const Option board = command
+                           .option("--board", options->emission.board.name,
+                                   "add a top module, pins and a host link: icebreaker or ulx3s")
+                           .type_name("B");
+  command.option("--baud", options->emission.board.baud, "bits per second of the board's serial line")
+      .needs(board)
+      .show_default()
+      .type_name("N");
   command
-      ->add_flag("--unchecked", options->unchecked,
-                 "do not check whether the board has room: for the simulator, which runs any size")
-      ->needs(board);
+      .flag("--unchecked", options->unchecked,
+            "do not check whether the board has room: for the simulator, which runs any size")
+      .needs(board);
   command
-      ->add_option("--bus", options->emission.board.bus,
-                   "add a wrapper with registers and an interrupt: axi4lite or wishbone")
-      ->type_name("BUS");
-  command->add_flag(
+      .option("--bus", options->emission.board.bus,
+              "add a wrapper with registers and an interrupt: axi4lite or wishbone")
+      .type_name("BUS");
+  command.flag(
       "--fixed-velocities", options->fixed_velocities,
       "with --board or --bus: the host cannot set the velocities of held and moved types: less area");
   command
-      ->add_option(
-          "--prefix", options->emission.prefix,
-          "begin every name of modules, packages and files with NAME_: two machines stand in one design")
-      ->type_name("NAME");
-  options->answer.add_to(*command);
-  command->callback([options] { emit(*options); });
+      .option("--prefix", options->emission.prefix,
+              "begin every name of modules, packages and files with NAME_: two machines stand in one design")
+      .type_name("NAME");
+  options->answer.add_to(command);
+  command.callback([options] { emit(*options); });
 }
 
 }  // namespace cuboct

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "cli/machine_cycles.h"
 #include "cli/technologies.h"
 #include "hw/memory_traffic.h"
+#include "hw/program/options.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
 
@@ -77,30 +77,30 @@ int energy(const Options& options) {
 
 }  // namespace
 
-void add_energy(CLI::App& app, int& exit_code) {
+void add_energy(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("energy", "joules, watts and area of a scene's machine, in bands");
-  options->input.add_to(*command);
-  command->add_option("--beside", options->beside, "a second machine description, to compare with the first")
-      ->type_name("FILE");
+  Command command = app.command("energy", "joules, watts and area of a scene's machine, in bands");
+  options->input.add_to(command);
+  command.option("--beside", options->beside, "a second machine description, to compare with the first")
+      .type_name("FILE");
   command
-      ->add_option("--technology", options->technologies,
-                   "one or several, with commas: " + list_of(technology_names()) + ", or files")
-      ->delimiter(',')
-      ->default_str("cmos45,cmos7")
-      ->type_name("NAME");
+      .option("--technology", options->technologies,
+              "one or several, with commas: " + list_of(technology_names()) + ", or files")
+      .delimiter(',')
+      .show_default("cmos45,cmos7")
+      .type_name("NAME");
   command
-      ->add_option("--link", options->link,
-                   "links go between chips, by " + list_of(link_names()) + "; default: wires on chip")
-      ->type_name("KIND");
-  command->add_option("--clock", options->clock, "of the machine")->type_name("F")->capture_default_str();
+      .option("--link", options->link,
+              "links go between chips, by " + list_of(link_names()) + "; default: wires on chip")
+      .type_name("KIND");
+  command.option("--clock", options->clock, "of the machine").type_name("F").show_default();
   command
-      ->add_option("--steps", options->steps,
-                   fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps))
-      ->check(whole_number())
-      ->type_name("N");
-  command->add_flag("--json", options->json, "print one JSON document instead of lines for people");
-  command->callback([options, &exit_code] { exit_code = energy(*options); });
+      .option("--steps", options->steps,
+              fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps))
+      .check(whole_number)
+      .type_name("N");
+  command.flag("--json", options->json, "print one JSON document instead of lines for people");
+  command.callback([options, &exit_code] { exit_code = energy(*options); });
 }
 
 }  // namespace cuboct

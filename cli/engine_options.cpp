@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "hw/engines.h"
+#include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
 
@@ -24,65 +24,60 @@ std::string the_engines(const std::vector<std::string>& names) {
 
 }  // namespace
 
-void EngineOptions::add_machines(CLI::App& command) {
+void EngineOptions::add_machines(Command& command) {
   command
-      .add_option("--threads", threads,
-                  "threads of lattice, systemc, rtl or reference; default: as many as suit the scene")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command.add_option("--ranks", ranks, "processes of lattice, over MPI")
-      ->check(CLI::Range(1, 65536))
-      ->type_name("N");
-  auto* list =
-      command
-          .add_option("--devices", devices, "devices of gpu by CUDA's ordinals, one per part of the scene")
-          ->delimiter(',')
-          ->check(CLI::Range(0, 1023))
-          ->type_name("A,B,...");
-  command.add_option("--gpus", gpus, "the first N devices of gpu; default: one")
-      ->check(CLI::Range(1, 64))
-      ->excludes(list)
-      ->type_name("N");
-  command.add_option("--port", port, "serial port of fpga's board, e.g. /dev/ttyUSB0")->type_name("P");
-  command.add_option("--baud", baud, "bits per second on it; default: 1000000")
-      ->check(CLI::Range(300, 12000000))
-      ->type_name("N");
+      .option("--threads", threads,
+              "threads of lattice, systemc, rtl or reference; default: as many as suit the scene")
+      .range(1, 4096)
+      .type_name("N");
+  command.option("--ranks", ranks, "processes of lattice, over MPI").range(1, 65536).type_name("N");
+  const Option list =
+      command.option("--devices", devices, "devices of gpu by CUDA's ordinals, one per part of the scene")
+          .delimiter(',')
+          .range(0, 1023)
+          .type_name("A,B,...");
+  command.option("--gpus", gpus, "the first N devices of gpu; default: one")
+      .range(1, 64)
+      .excludes(list)
+      .type_name("N");
+  command.option("--port", port, "serial port of fpga's board, e.g. /dev/ttyUSB0").type_name("P");
+  command.option("--baud", baud, "bits per second on it; default: 1000000")
+      .range(300, 12000000)
+      .type_name("N");
   command
-      .add_option("--port-timeout", timeout,
-                  "seconds without an answer after which fpga asks the board again; default: 0.3")
-      ->check(CLI::Range(0.001, 60.0))
-      ->type_name("T");
+      .option("--port-timeout", timeout,
+              "seconds without an answer after which fpga asks the board again; default: 0.3")
+      .range(0.001, 60.0)
+      .type_name("T");
 }
 
-void EngineOptions::add_numbers(CLI::App& command) {
+void EngineOptions::add_numbers(Command& command) {
   command
-      .add_option(
+      .option(
           "--precision", precision,
           "the numbers of reference, double (default) or float, and of gpu, fixed (default), float or double")
-      ->check(CLI::IsMember({"fixed", "float", "double"}));
+      .one_of({"fixed", "float", "double"});
   command
-      .add_option("--integrator", integrator,
-                  "euler (semi-implicit, as the fixed rule) or verlet, of reference")
-      ->check(CLI::IsMember({"euler", "verlet"}))
-      ->capture_default_str();
+      .option("--integrator", integrator, "euler (semi-implicit, as the fixed rule) or verlet, of reference")
+      .one_of({"euler", "verlet"})
+      .show_default();
 }
 
-void EngineOptions::add_run(CLI::App& command) {
-  command.add_flag("--joules", joules,
-                   "measure the energy of gpu's devices, which rest for two seconds first");
+void EngineOptions::add_run(Command& command) {
+  command.flag("--joules", joules, "measure the energy of gpu's devices, which rest for two seconds first");
   command
-      .add_option_function<uint64_t>(
-          "--hash-every", [this](uint64_t every) { hash_every = every, hashes_given = true; },
-          "steps between two hashes of the state; default: 100 of lattice and gpu, none of fpga, else 1")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 62))
-      ->type_name("K");
-  command.add_flag("--cycles", cycles, "count the machine's cycles in lattice");
+      .option("--hash-every", hash_every,
+              "steps between two hashes of the state; default: 100 of lattice and gpu, none of fpga, else 1")
+      .range(uint64_t{1}, uint64_t{1} << 62)
+      .type_name("K")
+      .given(hashes_given);
+  command.flag("--cycles", cycles, "count the machine's cycles in lattice");
   command
-      .add_option("--checkpoint-every", checkpoint_every,
-                  "'1000 steps', '30 s', '5 min' or '2 h': how often an engine other than systemc and rtl "
-                  "leaves a checkpoint in DIR")
-      ->type_name("T");
-  command.add_flag("--resume", resume, "go on from the checkpoint in DIR");
+      .option("--checkpoint-every", checkpoint_every,
+              "'1000 steps', '30 s', '5 min' or '2 h': how often an engine other than systemc and rtl "
+              "leaves a checkpoint in DIR")
+      .type_name("T");
+  command.flag("--resume", resume, "go on from the checkpoint in DIR");
 }
 
 void EngineOptions::check(const std::vector<std::string>& engines, const Input& input) const {

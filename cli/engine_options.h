@@ -28,9 +28,9 @@ struct EngineOptions {
   bool quiet = false;  // programs of engines say nothing, and what they would is an error's text
 
   void add_machines(
-      CLI::App& command);  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout
-  void add_numbers(CLI::App& command);  // --precision, --integrator
-  void add_run(CLI::App& command);      // what is of `run` alone
+      Command& command);  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout
+  void add_numbers(Command& command);  // --precision, --integrator
+  void add_run(Command& command);      // what is of `run` alone
 
   // Throws InputError where an option is given that none of the engines has, or not so, or one lacks that it
   // needs.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -9,6 +8,7 @@
 #include "cli/budget.h"
 #include "cli/command.h"
 #include "cli/explore_machines.h"
+#include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
@@ -121,34 +121,31 @@ int explore(const Options& options) {
 
 }  // namespace
 
-void add_explore(CLI::App& app, int& exit_code) {
+void add_explore(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("explore", "chart a study's settings or machines: errors, speed, energy");
-  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
+  Command command = app.command("explore", "chart a study's settings or machines: errors, speed, energy");
+  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command
-      ->add_option("--out", options->out,
-                   "directory for results; default: that of the study's name with .study")
-      ->type_name("DIR");
-  command->add_option("--jobs", options->jobs, "points computed at once; default: one per core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_option("--add", options->add, "results of the same study from elsewhere")->type_name("FILE");
+      .option("--out", options->out, "directory for results; default: that of the study's name with .study")
+      .type_name("DIR");
+  command.option("--jobs", options->jobs, "points computed at once; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
+  command.option("--add", options->add, "results of the same study from elsewhere").type_name("FILE");
   command
-      ->add_option(
-          "--error", options->error,
-          "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
-      ->type_name("E");
-  command->add_option("--figure", options->figure, "the figure of --error")->type_name("NAME");
-  command->add_flag("--no-speed", options->no_speed, "measure errors alone");
-  command->add_flag(
+      .option("--error", options->error,
+              "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
+      .type_name("E");
+  command.option("--figure", options->figure, "the figure of --error").type_name("NAME");
+  command.flag("--no-speed", options->no_speed, "measure errors alone");
+  command.flag(
       "--best", options->best,
       "of a study of machines: choose the one that keeps all constraints and has the least of what is "
       "minimised");
-  command->add_option("--emit", options->emit, "write the RTL project of that machine")->type_name("DIR");
-  command->add_flag("--confirm", options->confirm, "synthesise the machine before it is chosen");
-  options->answer.add_to(*command);
-  command->callback([options, &exit_code] { exit_code = explore(*options); });
+  command.option("--emit", options->emit, "write the RTL project of that machine").type_name("DIR");
+  command.flag("--confirm", options->confirm, "synthesise the machine before it is chosen");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { exit_code = explore(*options); });
 }
 
 }  // namespace cuboct

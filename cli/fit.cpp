@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <chrono>
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include "cli/answer.h"
 #include "cli/bond_fit.h"
 #include "cli/command.h"
+#include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
@@ -189,20 +189,17 @@ int fit_study(const Options& options) {
 
 }  // namespace
 
-void add_fit(CLI::App& app, int& exit_code) {
+void add_fit(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("fit", "find the force law of a curve, or the potential of a crystal");
-  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
-  command
-      ->add_option("--out", options->out,
-                   "directory for results; default: that of the study's name with .fit")
-      ->type_name("DIR");
-  command->add_option("--jobs", options->jobs, "laws tried at once; default: one per core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  options->answer.add_to(*command);
-  command->callback([options, &exit_code] {
+  Command command = app.command("fit", "find the force law of a curve, or the potential of a crystal");
+  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
+  command.option("--out", options->out, "directory for results; default: that of the study's name with .fit")
+      .type_name("DIR");
+  command.option("--jobs", options->jobs, "laws tried at once; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] {
     exit_code = is_bond_study(options->study)
                     ? fit_bonds(options->study, options->out, options->jobs, options->answer)
                     : fit_study(*options);

@@ -2,12 +2,12 @@
 #include "cli/help.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <sstream>
+#include <string_view>
 
 namespace cuboct {
 namespace {
@@ -16,7 +16,7 @@ constexpr size_t kColumns = 80, kIndent = 26;
 
 // In the order in which they are shown; commands of a group stand together.
 struct Entry {
-  const char *group, *command, *example;
+  std::string_view group, command, example;
 };
 constexpr std::array kEntries{
     Entry{"make a scene", "new", "cuboct new arm --like beam"},
@@ -63,74 +63,56 @@ std::string row(const std::string& names, const std::string& text) {
                      wrapped(text, kIndent));
 }
 
-// "N" of "N:INT in [1 - 4096]": what an option accepts it says where it refuses.
-std::string value_of(const CLI::Option& option) {
-  if (option.get_expected_max() == 0) return {};
-  const std::string type = option.get_type_name().substr(0, option.get_type_name().find(':'));
-  return type == "TEXT" ? "WORD" : type;
+std::string value_of(const OptionText& option) {
+  return option.type_name == "TEXT" ? "WORD" : option.type_name;
 }
 
-std::string names_of(const CLI::Option& option) {
-  std::string names;
-  for (const std::string& name : option.get_snames()) names += (names.empty() ? "-" : ", -") + name;
-  for (const std::string& name : option.get_lnames()) names += (names.empty() ? "--" : ", --") + name;
+std::string names_of(const OptionText& option) {
   const std::string value = value_of(option);
-  return value.empty() ? names : names + " " + value;
+  return fmt::format("{}{}{}", fmt::join(option.names, ", "), value.empty() ? "" : " ", value);
 }
 
-std::string text_of(const CLI::Option& option) {
-  std::string text = option.get_description();
-  if (!option.get_default_str().empty()) text += fmt::format("; default: {}", option.get_default_str());
-  if (option.get_required() && !option.get_positional()) text += "; required";
+std::string text_of(const OptionText& option) {
+  std::string text = option.description;
+  if (!option.shown_default.empty()) text += fmt::format("; default: {}", option.shown_default);
+  if (option.required && !option.names.empty()) text += "; required";
   return text;
 }
 
-class Help : public CLI::FormatterBase {
- public:
-  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
-    return app->get_parent() ? of_command(*app) : of_all(*app);
-  }
-
- private:
-  static std::string of_command(const CLI::App& app) {
-    std::string usage = "usage: cuboct " + app.get_name() + " [OPTIONS]", words, options;
-    for (const CLI::Option* option : app.get_options()) {
-      if (option->get_positional()) {
-        const std::string value = value_of(*option);
-        usage += option->get_required() ? " " + value : fmt::format(" [{}]", value);
-        words += row(value, text_of(*option));
-      } else if (!option->get_group().empty()) {
-        options += row(names_of(*option), text_of(*option));
-      }
+std::string of_command(const CommandText& command) {
+  std::string usage = "usage: cuboct " + command.name + " [OPTIONS]", words, options;
+  for (const OptionText& option : command.options) {
+    if (option.names.empty()) {
+      const std::string value = value_of(option);
+      usage += option.required ? " " + value : fmt::format(" [{}]", value);
+      words += row(value, text_of(option));
+    } else {
+      options += row(names_of(option), text_of(option));
     }
-    return fmt::format("{}: {}\n{}\n\n{}\noptions:\n{}\nexample:\n  {}\n", app.get_name(),
-                       app.get_description(), usage, words, options, app.get_footer());
   }
+  const auto entry = std::ranges::find(kEntries, command.name, &Entry::command);
+  return fmt::format("{}: {}\n{}\n\n{}\noptions:\n{}\nexample:\n  {}\n", command.name, command.description,
+                     usage, words, options, entry->example);
+}
 
-  static std::string of_all(const CLI::App& app) {
-    std::string text = fmt::format("{}\nusage: cuboct COMMAND ...\n", app.get_description()), group;
-    for (const Entry& entry : kEntries) {
-      if (group != entry.group) text += fmt::format("\n{}:\n", group = entry.group);
-      text += fmt::format("  {:<12}{}\n                {}\n", entry.command,
-                          app.get_subcommand(entry.command)->get_description(), entry.example);
-    }
-    return text +
-           "\n'cuboct help COMMAND', or 'cuboct COMMAND --help', tells its options. 'cuboct\n"
-           "--version' tells version, commit and engines. Exit codes: 0 done; 1 a run found\n"
-           "something wrong, or failed; 2 the input or the command line is wrong.\n";
+std::string of_all(const CommandText& app) {
+  std::string text = fmt::format("{}\nusage: cuboct COMMAND ...\n", app.description), group;
+  for (const Entry& entry : kEntries) {
+    if (group != entry.group) text += fmt::format("\n{}:\n", group = entry.group);
+    const auto command = std::ranges::find(app.commands, entry.command, &CommandText::name);
+    text +=
+        fmt::format("  {:<12}{}\n                {}\n", entry.command, command->description, entry.example);
   }
-};
+  return text +
+         "\n'cuboct help COMMAND', or 'cuboct COMMAND --help', tells its options. 'cuboct\n"
+         "--version' tells version, commit and engines. Exit codes: 0 done; 1 a run found\n"
+         "something wrong, or failed; 2 the input or the command line is wrong.\n";
+}
 
 }  // namespace
 
-void set_help(CLI::App& app) {
-  const auto help = std::make_shared<Help>();
-  app.formatter(help);
-  for (const Entry& entry : kEntries) {
-    CLI::App* command = app.get_subcommand(entry.command);
-    command->formatter(help);
-    command->footer(entry.example);
-  }
+std::string help_text(const CommandText& command) {
+  return command.commands.empty() ? of_command(command) : of_all(command);
 }
 
 }  // namespace cuboct

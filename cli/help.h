@@ -3,13 +3,12 @@
 // example.
 #pragma once
 
-namespace CLI {
-class App;
-}
+#include <string>
+
+#include "hw/program/options.h"
 
 namespace cuboct {
 
-// To be called once all commands are there: puts them in groups, and gives each its example.
-void set_help(CLI::App& app);
+std::string help_text(const CommandText& command);
 
 }  // namespace cuboct

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -11,6 +10,7 @@
 
 #include "cli/answer.h"
 #include "cli/learn_cracks.h"
+#include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -134,19 +134,18 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_learn(CLI::App& app, int& exit_code) {
+void add_learn(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("learn", "learn a linear peridynamic solid from a sheet of atoms");
-  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
+  Command command = app.command("learn", "learn a linear peridynamic solid from a sheet of atoms");
+  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command
-      ->add_option("--out", options->out,
-                   "directory for results; default: that of the study's name with .learn")
-      ->type_name("DIR");
-  command->add_option("--jobs", options->jobs, "samples at once; default: one per core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  options->answer.add_to(*command);
-  command->callback([options, &exit_code] { run(*options), exit_code = 0; });
+      .option("--out", options->out, "directory for results; default: that of the study's name with .learn")
+      .type_name("DIR");
+  command.option("--jobs", options->jobs, "samples at once; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { run(*options), exit_code = 0; });
 }
 
 }  // namespace cuboct

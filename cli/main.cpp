@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <new>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "cli/help.h"
 #include "cli/learn.h"
 #include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
 #include "model/base/standard_streams.h"
@@ -24,23 +23,22 @@ namespace cuboct {
 namespace {
 
 // CLI11 reports unknown words without a proposal, so they are looked for first.
-void check_words(const CLI::App& app, const std::vector<std::string>& words) {
+void check_words(const CommandText& app, const std::vector<std::string>& words) {
   std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    commands.push_back(command->get_name());
+  for (const CommandText& command : app.commands) commands.push_back(command.name);
   if (words.empty()) throw InputError("no command", "one of " + list_of(commands) + "; see 'cuboct --help'");
   if (words[0].starts_with('-')) {
     if (words[0] != "--help" && words[0] != "-h" && words[0] != "--version")
       throw InputError(fmt::format("unknown option '{}'", words[0]), "see 'cuboct --help'");
     return;
   }
-  if (std::find(commands.begin(), commands.end(), words[0]) == commands.end()) {
+  const auto command = std::ranges::find(app.commands, words[0], &CommandText::name);
+  if (command == app.commands.end()) {
     const std::string near = did_you_mean(words[0], commands);
     throw InputError(fmt::format("unknown command '{}'", words[0]),
                      near.empty() ? "one of " + list_of(commands) : near);
   }
-  const CLI::App* command = app.get_subcommand(words[0]);
-  if (command->get_prefix_command()) return;  // left out of this build
+  if (command->any_words) return;  // left out of this build
   // An empty value is a variable of a script that was never set; an empty path would mean none.
   for (size_t i = 1; i < words.size(); ++i)
     if (words[i].empty() || (words[i].starts_with("--") && words[i].ends_with('='))) {
@@ -51,10 +49,8 @@ void check_words(const CLI::App& app, const std::vector<std::string>& words) {
                        fmt::format("leave it out, or see 'cuboct {} --help'", words[0]));
     }
   std::vector<std::string> options, letters;
-  for (const CLI::Option* option : command->get_options()) {
-    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) letters.push_back("-" + name);
-  }
+  for (const OptionText& option : command->options)
+    for (const std::string& name : option.names) (name.starts_with("--") ? options : letters).push_back(name);
   for (size_t i = 1; i < words.size(); ++i) {
     const bool is_short = words[i].size() > 1 && words[i][0] == '-' && std::isalpha(words[i][1]);
     if (!words[i].starts_with("--") && !is_short) continue;
@@ -80,13 +76,12 @@ int tell(const InputError& error, bool as_json, int exit_code) {
   return exit_code;
 }
 
-int main_of(std::vector<std::string> words, bool as_json) {
+int main_of(const std::vector<std::string>& words, bool as_json) {
   int exit_code = 0;
-  CLI::App app("cuboct: particle matter and the hardware that computes it, the same bits.", "cuboct");
-  app.set_version_flag(
-      "--version", [] { return version_text(); }, "Print version, commit and engines, and exit");
-  app.require_subcommand(1);
-  app.set_help_flag("-h,--help", "print this help and exit");
+  Command app("cuboct", "cuboct: particle matter and the hardware that computes it, the same bits.");
+  app.version("--version", version_text, "Print version, commit and engines, and exit");
+  app.require_command();
+  app.help("-h,--help", "print this help and exit", help_text);
   add_new(app, exit_code);
   add_check(app, exit_code);
   add_run(app, exit_code);
@@ -105,7 +100,6 @@ int main_of(std::vector<std::string> words, bool as_json) {
   add_bench(app, exit_code);
   add_picture(app, exit_code);
   add_report(app, exit_code);
-  set_help(app);
   // What an exception says in its own words: a message, perhaps of several lines.
   const auto plain = [&](const std::string& text, int code) {
     if (as_json) return tell(InputError(text), true, code);
@@ -113,15 +107,9 @@ int main_of(std::vector<std::string> words, bool as_json) {
     return code;
   };
   try {
-    check_words(app, words);
-    std::ranges::reverse(words);  // as CLI11 takes them
-    app.parse(std::move(words));
-  } catch (const CLI::Success& help) {
-    std::ostringstream text;
-    const int code = app.exit(help, text);
-    fmt::print("{}", text.str());
-    return code;
-  } catch (const CLI::Error& error) {
+    check_words(app.text(), words);
+    if (const auto asked = app.parse(words)) fmt::print("{}", *asked);
+  } catch (const WrongWords& error) {
     return plain(error.what(), 2);
   } catch (const InputError& error) {
     return tell(error, as_json, 2);

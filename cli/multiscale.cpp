@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <map>
@@ -13,6 +12,7 @@
 #include "cli/multiscale_node.h"
 #include "cli/multiscale_text.h"
 #include "cli/technologies.h"
+#include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -123,33 +123,32 @@ void multiscale(const Options& options) {
 
 }  // namespace
 
-void add_multiscale(CLI::App& app, int& exit_code) {
+void add_multiscale(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("multiscale", "stretch or strike a body whose elements carry their atoms");
-  command->add_option("study", options->study, "study file (TOML)")->required()->type_name("STUDY");
+  Command command = app.command("multiscale", "stretch or strike a body whose elements carry their atoms");
+  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command
-      ->add_option("--out", options->out,
-                   "directory for results; default: that of the study's name with .multiscale")
-      ->type_name("DIR");
-  command->add_option("--threads", options->threads, "they change no bit; default: one per core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->add_flag("--gpu", options->gpu,
-                    "relax samples on the first GPU: pays from some 400,000 relaxations on");
+      .option("--out", options->out,
+              "directory for results; default: that of the study's name with .multiscale")
+      .type_name("DIR");
+  command.option("--threads", options->threads, "they change no bit; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
+  command.flag("--gpu", options->gpu,
+               "relax samples on the first GPU: pays from some 400,000 relaxations on");
   command
-      ->add_option("--technology", options->technologies,
-                   "also count a node for each element, in joules of these: " + list_of(technology_names()) +
-                       ", or files")
-      ->delimiter(',')
-      ->type_name("NAME");
-  command->add_option("--clock", options->clock, "of the node")->type_name("F")->capture_default_str();
-  command->add_option("--fraction", options->fraction, "bits behind the point of the node's numbers")
-      ->check(CLI::Range(10, 40))
-      ->type_name("BITS")
-      ->capture_default_str();
-  options->answer.add_to(*command);
-  command->callback([options, &exit_code] { multiscale(*options), exit_code = 0; });
+      .option("--technology", options->technologies,
+              "also count a node for each element, in joules of these: " + list_of(technology_names()) +
+                  ", or files")
+      .delimiter(',')
+      .type_name("NAME");
+  command.option("--clock", options->clock, "of the node").type_name("F").show_default();
+  command.option("--fraction", options->fraction, "bits behind the point of the node's numbers")
+      .range(10, 40)
+      .type_name("BITS")
+      .show_default();
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { multiscale(*options), exit_code = 0; });
 }
 
 }  // namespace cuboct

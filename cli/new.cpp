@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/templates.h"
+#include "hw/program/options.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/spelling.h"
@@ -81,17 +81,15 @@ void make(const Options& options) {
 
 const std::string& template_text(const std::string& name) { return template_of(name).text; }
 
-void add_new(CLI::App& app, int&) {
+void add_new(Command& app, int&) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("new", "write a commented scene to start from");
-  command->add_option("name", options->name, "the file, NAME.toml")->type_name("NAME");
-  command->add_option("--like", options->like, "what it shows: see --list")
-      ->capture_default_str()
-      ->type_name("TEMPLATE");
-  command->add_flag("--list", options->list, "tell what templates there are");
-  options->answer.add_to(*command);
-  command->add_flag("--force", options->force, "replace a file of that name");
-  command->callback([options] { make(*options); });
+  Command command = app.command("new", "write a commented scene to start from");
+  command.option("name", options->name, "the file, NAME.toml").type_name("NAME");
+  command.option("--like", options->like, "what it shows: see --list").show_default().type_name("TEMPLATE");
+  command.flag("--list", options->list, "tell what templates there are");
+  options->answer.add_to(command);
+  command.flag("--force", options->force, "replace a file of that name");
+  command.callback([options] { make(*options); });
 }
 
 }  // namespace cuboct

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
@@ -45,17 +45,12 @@ std::vector<size_t> frames_of(const Rasters& rasters, const std::vector<uint64_t
   return frames;
 }
 
-// CLI::PositiveNumber takes "nan".
-CLI::Validator above_zero() {
-  return CLI::Validator(
-      [](std::string& text) {
-        double value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool fine =
-            error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value > 0;
-        return fine ? std::string() : fmt::format("'{}' is not a number above 0", text);
-      },
-      "");
+std::string above_zero(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool fine =
+      error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value > 0;
+  return fine ? std::string() : fmt::format("'{}' is not a number above 0", text);
 }
 
 void draw(const Options& options) {
@@ -79,34 +74,32 @@ void draw(const Options& options) {
 
 }  // namespace
 
-void add_picture(CLI::App& app, int&) {
+void add_picture(Command& app, int&) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("picture", "draw the frames of a run's directory, of bodies of any size");
-  command->add_option("directory", options->directory, "what 'cuboct run --out' wrote")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--out", options->out, "the PNG file; default: DIR/picture.png")->type_name("FILE");
-  command->add_option("--field", options->field, "strain, speed, thickness or broken (bonds)")
-      ->capture_default_str();
+  Command command = app.command("picture", "draw the frames of a run's directory, of bodies of any size");
+  command.option("directory", options->directory, "what 'cuboct run --out' wrote")
+      .required()
+      .type_name("DIR");
+  command.option("--out", options->out, "the PNG file; default: DIR/picture.png").type_name("FILE");
+  command.option("--field", options->field, "strain, speed, thickness or broken (bonds)").show_default();
   command
-      ->add_option("--steps", options->steps,
-                   "frames to draw, by their steps; default: first, last and two between")
-      ->delimiter(',')
-      ->check(whole_number())
-      ->type_name("N,...");
+      .option("--steps", options->steps,
+              "frames to draw, by their steps; default: first, last and two between")
+      .delimiter(',')
+      .check(whole_number)
+      .type_name("N,...");
   command
-      ->add_option("--limit", options->limit,
-                   "where the colours end: strain (0.01 is 1 %), m/s, m or bonds; default: the 90th "
-                   "percentile of all frames")
-      ->check(above_zero())
-      ->type_name("V");
-  command->add_option("--width", options->width, "pixels of the picture")
-      ->check(CLI::Range(400, 16384))
-      ->capture_default_str()
-      ->type_name("PX");
-  options->answer.add_to(*command);
-  command->callback([options] { draw(*options); });
+      .option("--limit", options->limit,
+              "where the colours end: strain (0.01 is 1 %), m/s, m or bonds; default: the 90th "
+              "percentile of all frames")
+      .check(above_zero)
+      .type_name("V");
+  command.option("--width", options->width, "pixels of the picture")
+      .range(400, 16384)
+      .show_default()
+      .type_name("PX");
+  options->answer.add_to(command);
+  command.callback([options] { draw(*options); });
 }
 
 }  // namespace cuboct

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "cli/answer.h"
 #include "cli/budget.h"
 #include "cli/command.h"
+#include "hw/program/options.h"
 #include "model/analysis/measure.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
@@ -175,39 +175,36 @@ int find(const Options& options) {
 
 }  // namespace
 
-void add_pitch(CLI::App& app, int& exit_code) {
+void add_pitch(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("pitch", "find the pitch that keeps a figure within an error");
-  command->add_option("scene", options->scene, "scene file (TOML)")->required()->type_name("SCENE");
-  command->add_option("--error", options->error, "wanted, of the figure, as 5% or 0.05")
-      ->capture_default_str()
-      ->type_name("E");
+  Command command = app.command("pitch", "find the pitch that keeps a figure within an error");
+  command.option("scene", options->scene, "scene file (TOML)").required().type_name("SCENE");
+  command.option("--error", options->error, "wanted, of the figure, as 5% or 0.05")
+      .show_default()
+      .type_name("E");
   command
-      ->add_option("--figure", options->figure,
-                   "modulus, strength, frequency, break_time, mean or final; default: modulus")
-      ->type_name("KIND");
+      .option("--figure", options->figure,
+              "modulus, strength, frequency, break_time, mean or final; default: modulus")
+      .type_name("KIND");
+  command.option("--curve", options->curve, "of a probe; default: the stress of the only one of its kind")
+      .type_name("CURVE");
+  command.option("--engine", options->engine, "lattice or reference; a static scene is relaxed in doubles")
+      .one_of({"lattice", "reference"})
+      .show_default()
+      .type_name("NAME");
+  command.option("--arch", options->arch, "machine (TOML)").type_name("ARCH");
+  command.option("--particles", options->most, "at most so many")
+      .range(uint64_t{100}, uint64_t{100'000'000})
+      .show_default()
+      .type_name("N");
+  command.option("--threads", options->threads, "of the host; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
   command
-      ->add_option("--curve", options->curve, "of a probe; default: the stress of the only one of its kind")
-      ->type_name("CURVE");
-  command
-      ->add_option("--engine", options->engine, "lattice or reference; a static scene is relaxed in doubles")
-      ->check(CLI::IsMember({"lattice", "reference"}))
-      ->capture_default_str()
-      ->type_name("NAME");
-  command->add_option("--arch", options->arch, "machine (TOML)")->type_name("ARCH");
-  command->add_option("--particles", options->most, "at most so many")
-      ->check(CLI::Range(uint64_t{100}, uint64_t{100'000'000}))
-      ->capture_default_str()
-      ->type_name("N");
-  command->add_option("--threads", options->threads, "of the host; default: one per core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command
-      ->add_option("--out", options->out,
-                   "directory for results; default: that of the scene's name with .pitch")
-      ->type_name("DIR");
-  options->answer.add_to(*command);
-  command->callback([options, &exit_code] { exit_code = find(*options); });
+      .option("--out", options->out, "directory for results; default: that of the scene's name with .pitch")
+      .type_name("DIR");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { exit_code = find(*options); });
 }
 
 }  // namespace cuboct

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "cli/report.h"
 #include "cli/report_pictures.h"
 #include "cli/summary.h"
+#include "hw/program/options.h"
 #include "model/analysis/story.h"
 #include "model/analysis/tension.h"
 #include "model/base/base64.h"
@@ -406,22 +406,22 @@ void report(const std::string& directory, std::string out, const Answer& answer)
 
 }  // namespace
 
-void add_report(CLI::App& app, int&) {
+void add_report(Command& app, int&) {
   struct Options {
     std::string directory, out;
     Answer answer;
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("report", "make one HTML file of a run's directory");
+  Command command = app.command("report", "make one HTML file of a run's directory");
   command
-      ->add_option("directory", options->directory,
-                   "what 'cuboct run --out' wrote; traces in its folder "
-                   "'crosscheck' join the table of engines")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--out", options->out, "the HTML file; default: DIR/report.html")->type_name("FILE");
-  options->answer.add_to(*command);
-  command->callback([options] { report(options->directory, options->out, options->answer); });
+      .option("directory", options->directory,
+              "what 'cuboct run --out' wrote; traces in its folder "
+              "'crosscheck' join the table of engines")
+      .required()
+      .type_name("DIR");
+  command.option("--out", options->out, "the HTML file; default: DIR/report.html").type_name("FILE");
+  options->answer.add_to(command);
+  command.callback([options] { report(options->directory, options->out, options->answer); });
 }
 
 }  // namespace cuboct

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -18,6 +17,7 @@
 #include "cli/summary.h"
 #include "cli/view.h"
 #include "hw/engines.h"
+#include "hw/program/options.h"
 #include "hw/scene_engine.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
@@ -250,67 +250,62 @@ int run(Options options) {
 
 }  // namespace
 
-void add_run(CLI::App& app, int& exit_code) {
+void add_run(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "run a scene and end with a summary");
-  options->input.add_to(*command);
-  options->input.add_start_to(*command);
-  options->input.add_stalls_to(*command);
-  command->add_option(
+  Command command = app.command("run", "run a scene and end with a summary");
+  options->input.add_to(command);
+  options->input.add_start_to(command);
+  options->input.add_stalls_to(command);
+  command.option(
       "--engine", options->engine,
       "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats); default: lattice, for "
       "static loading reference");
-  auto* steps = command->add_option("--steps", options->steps, "steps; default: the scene's")
-                    ->check(whole_number())
-                    ->type_name("N");
-  auto* frames = command
-                     ->add_option("--frame-every", options->frame_every,
-                                  "keep every K-th state; default: the scene's; 0: first and last")
-                     ->check(whole_number())
-                     ->type_name("K");
-  auto* formats =
-      command
-          ->add_option("--frames", options->frames,
-                       "formats of the frames in DIR, written as they come: xyz, xyz.gz, ase "
-                       "(frames.ase.xyz), vtp, lammps (frames.dump.gz), or none; default: xyz,vtp")
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->check(CLI::IsMember({"xyz", "xyz.gz", "ase", "vtp", "lammps", "none"}))
-          ->type_name("A,B,...");
-  options->engines.add_machines(*command);
-  options->engines.add_numbers(*command);
-  options->engines.add_run(*command);
-  command->add_option("--out", options->out, "directory for trace, frames, plan and summary")
-      ->type_name("DIR");
-  command->add_flag("--force", options->force, "begin anew in a DIR whose run did not end, in its place");
-  auto* raster = command
-                     ->add_option("--raster", options->raster,
-                                  "pixels along the body of the pictures that DIR keeps of its frames")
-                     ->check(CLI::Range(16u, 16384u))
-                     ->capture_default_str()
-                     ->type_name("PX");
-  command->add_flag("--no-states", options->no_states,
-                    "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
-  command->add_flag("--si", options->si,
-                    "the trace in DIR holds positions and velocities in m and m/s as well");
-  command->add_flag("--no-watch", options->no_watch,
-                    "do not look for what makes a run wrong (docs/reference/failures.md)");
-  command->add_flag("--view", options->view,
-                    "show the run while it goes: DIR/report.html follows the frames, and opens in a browser "
-                    "where there is a display; keeps 40 frames unless scene or --frame-every say otherwise");
-  command->add_flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
-  auto* quiet = command->add_flag("-q,--quiet", options->quiet,
-                                  "nothing on stderr but errors: no table of the run as it goes");
-  command->add_flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
-      ->excludes(quiet);
-  options->answer.add_to(*command);
-  command->callback([options, steps, frames, formats, raster, &exit_code] {
-    options->formats_given = formats->count() > 0;
-    options->steps_given = steps->count() > 0;
-    options->raster_given = raster->count() > 0;
-    options->frames_given = frames->count() > 0;
-    exit_code = run(*options);
-  });
+  command.option("--steps", options->steps, "steps; default: the scene's")
+      .check(whole_number)
+      .type_name("N")
+      .given(options->steps_given);
+  command
+      .option("--frame-every", options->frame_every,
+              "keep every K-th state; default: the scene's; 0: first and last")
+      .check(whole_number)
+      .type_name("K")
+      .given(options->frames_given);
+  command
+      .option("--frames", options->frames,
+              "formats of the frames in DIR, written as they come: xyz, xyz.gz, ase "
+              "(frames.ase.xyz), vtp, lammps (frames.dump.gz), or none; default: xyz,vtp")
+      .delimiter(',')
+      .one_word()
+      .one_of({"xyz", "xyz.gz", "ase", "vtp", "lammps", "none"})
+      .type_name("A,B,...")
+      .given(options->formats_given);
+  options->engines.add_machines(command);
+  options->engines.add_numbers(command);
+  options->engines.add_run(command);
+  command.option("--out", options->out, "directory for trace, frames, plan and summary").type_name("DIR");
+  command.flag("--force", options->force, "begin anew in a DIR whose run did not end, in its place");
+  command
+      .option("--raster", options->raster,
+              "pixels along the body of the pictures that DIR keeps of its frames")
+      .range(16u, 16384u)
+      .show_default()
+      .type_name("PX")
+      .given(options->raster_given);
+  command.flag("--no-states", options->no_states,
+               "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
+  command.flag("--si", options->si, "the trace in DIR holds positions and velocities in m and m/s as well");
+  command.flag("--no-watch", options->no_watch,
+               "do not look for what makes a run wrong (docs/reference/failures.md)");
+  command.flag("--view", options->view,
+               "show the run while it goes: DIR/report.html follows the frames, and opens in a browser "
+               "where there is a display; keeps 40 frames unless scene or --frame-every say otherwise");
+  command.flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
+  const Option quiet = command.flag("-q,--quiet", options->quiet,
+                                    "nothing on stderr but errors: no table of the run as it goes");
+  command.flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
+      .excludes(quiet);
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace cuboct

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 #include <unistd.h>
-#include <CLI/CLI.hpp>
 
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/outputs.h"
+#include "hw/program/options.h"
 #include "hw/setup.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
@@ -252,28 +252,24 @@ void stability(const Options& options) {
 
 }  // namespace
 
-void add_stability(CLI::App& app, int&) {
+void add_stability(Command& app, int&) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("stability", "measure the largest stable time step, beside what theory says");
-  options->input.add_to(*command);
-  options->answer.add_to(*command);
-  command->add_option("--maps", options->maps, "draw maps of stable and unstable runs there")
-      ->type_name("DIR");
+  Command command = app.command("stability", "measure the largest stable time step, beside what theory says");
+  options->input.add_to(command);
+  options->answer.add_to(command);
+  command.option("--maps", options->maps, "draw maps of stable and unstable runs there").type_name("DIR");
   command
-      ->add_option("--strain", options->strain,
-                   "the part of its length that the body is stretched and pressed by; 0: neither")
-      ->type_name("E")
-      ->capture_default_str();
-  command->add_option("--axis", options->axis, "of the strain; default: the tensile probe's, or the longest")
-      ->type_name("A");
-  command->add_option("--resolution", options->resolution, "of the measured limits, relative")
-      ->type_name("R")
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "of the engines; default: 1")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  command->callback([options] { stability(*options); });
+      .option("--strain", options->strain,
+              "the part of its length that the body is stretched and pressed by; 0: neither")
+      .type_name("E")
+      .show_default();
+  command.option("--axis", options->axis, "of the strain; default: the tensile probe's, or the longest")
+      .type_name("A");
+  command.option("--resolution", options->resolution, "of the measured limits, relative")
+      .type_name("R")
+      .show_default();
+  command.option("--threads", options->threads, "of the engines; default: 1").range(1, 4096).type_name("N");
+  command.callback([options] { stability(*options); });
 }
 
 }  // namespace cuboct

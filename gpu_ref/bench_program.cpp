@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
 
 #include "gpu_ref/bench_report.h"
 #include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
@@ -146,30 +146,24 @@ int run(const Request& request, const BenchMachine& machine) {
 int run_bench(int argc, char** argv, const BenchMachine& machine) {
   Request request;
   BenchOptions& options = request.options;
-  CLI::App app{"Measures how fast the GPU engines are, and what energy they take", "cuboct-gpu bench"};
-  app.add_option("--only", request.only, "A row, or its first words; all without it")->type_name("NAME");
-  app.add_flag("--list", request.list, "Name the rows");
-  app.add_option("--devices", options.engine.devices, "GPUs, one per slab: 0,1")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--block", options.engine.block, "Threads of a block, a multiple of 32 up to 256")
-      ->capture_default_str();
-  app.add_option("--repeats", request.repeats, "Of which the median is told; 5, quick: 3")
-      ->check(CLI::Range(1, 1000));
-  app.add_option("--seconds", request.seconds, "Least length of a repeat; 0.3, quick: 0.1")
-      ->check(CLI::Range(1e-3, 1e4));
-  app.add_option("--settle", options.settle,
-                 "Steps before the timing; a melt's 1000, others' 100 without it");
-  app.add_flag("--quick", request.quick,
-               "Short repeats, no energies, the smallest size unless --only names one");
-  app.add_flag("--no-energy", request.no_energy, "Measure no energies");
-  app.add_option("--window", options.times.window, "Least length of the time whose energy is measured, s")
-      ->check(CLI::Range(0.5, 1e4))
-      ->capture_default_str();
-  app.add_option("--json", request.json,
-                 "Also write a line of JSON for the machine and for each row to this file");
-  app.add_option("--lines", request.lines, "Also write 'name value unit' lines to this file");
-  app.add_option("--machine", request.machine, "Write to this file what the devices are, and end");
+  Command app("cuboct-gpu bench", "Measures how fast the GPU engines are, and what energy they take");
+  app.option("--only", request.only, "A row, or its first words; all without it").type_name("NAME");
+  app.flag("--list", request.list, "Name the rows");
+  app.option("--devices", options.engine.devices, "GPUs, one per slab: 0,1").delimiter(',').show_default();
+  app.option("--block", options.engine.block, "Threads of a block, a multiple of 32 up to 256")
+      .show_default();
+  app.option("--repeats", request.repeats, "Of which the median is told; 5, quick: 3").range(1, 1000);
+  app.option("--seconds", request.seconds, "Least length of a repeat; 0.3, quick: 0.1").range(1e-3, 1e4);
+  app.option("--settle", options.settle, "Steps before the timing; a melt's 1000, others' 100 without it");
+  app.flag("--quick", request.quick, "Short repeats, no energies, the smallest size unless --only names one");
+  app.flag("--no-energy", request.no_energy, "Measure no energies");
+  app.option("--window", options.times.window, "Least length of the time whose energy is measured, s")
+      .range(0.5, 1e4)
+      .show_default();
+  app.option("--json", request.json,
+             "Also write a line of JSON for the machine and for each row to this file");
+  app.option("--lines", request.lines, "Also write 'name value unit' lines to this file");
+  app.option("--machine", request.machine, "Write to this file what the devices are, and end");
   return run_command_line(app, argc, argv, [&] {
     if (options.engine.block % 32 != 0 || options.engine.block < 32 || options.engine.block > 256)
       throw InputError(fmt::format("--block {}: not a multiple of 32 from 32 to 256", options.engine.block));

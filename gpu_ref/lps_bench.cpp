@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/os.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "gpu_ref/lps_compare.h"
 #include "gpu_ref/messages.h"
 #include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/real/rounds_engine.h"
@@ -167,38 +167,31 @@ int run(const Request& request) {
   return 0;
 }
 
-void add_options(CLI::App& app, Request& request) {
-  app.add_option("SCENE", request.scene, "A scene with [rule] kind = \"lps\"")->required();
-  app.add_option("--precision", request.precision, "float, double or both")
-      ->check(CLI::IsMember({"float", "double", "both"}))
-      ->capture_default_str();
-  app.add_option("--steps", request.steps, "Of a run; the scene's own number without it");
-  app.add_option("--repeats", request.repeats, "Runs, of which the median is told")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option("--compare", request.compared, "Steps beside the reference in doubles; 0: none")
-      ->capture_default_str();
-  app.add_option("--from", request.from, "The step from which on; half of the run without it");
-  app.add_option("--threads", request.threads, "Of the reference; as many as pay without it");
-  app.add_option("--rows", request.rows, "Looks at the cracks along the run")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
-  app.add_option("--damaged", request.damaged, "The damage from which on a point is part of a crack")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_option("--points", request.points, "Begin of the files of damaged points: NAME.float.tsv");
-  app.add_option("--device", request.device, "CUDA's ordinal")->capture_default_str();
-  app.add_option("--block", request.block, "Threads of a block")
-      ->check(CLI::IsMember({32, 64, 128, 256}))
-      ->capture_default_str();
-  app.add_flag("--no-energy", request.no_energy, "Measure no energies");
+void add_options(Command& app, Request& request) {
+  app.option("SCENE", request.scene, "A scene with [rule] kind = \"lps\"").required();
+  app.option("--precision", request.precision, "float, double or both")
+      .one_of({"float", "double", "both"})
+      .show_default();
+  app.option("--steps", request.steps, "Of a run; the scene's own number without it");
+  app.option("--repeats", request.repeats, "Runs, of which the median is told").range(1, 1000).show_default();
+  app.option("--compare", request.compared, "Steps beside the reference in doubles; 0: none").show_default();
+  app.option("--from", request.from, "The step from which on; half of the run without it");
+  app.option("--threads", request.threads, "Of the reference; as many as pay without it");
+  app.option("--rows", request.rows, "Looks at the cracks along the run").range(0, 100000).show_default();
+  app.option("--damaged", request.damaged, "The damage from which on a point is part of a crack")
+      .range(0.0, 1.0)
+      .show_default();
+  app.option("--points", request.points, "Begin of the files of damaged points: NAME.float.tsv");
+  app.option("--device", request.device, "CUDA's ordinal").show_default();
+  app.option("--block", request.block, "Threads of a block").one_of({32, 64, 128, 256}).show_default();
+  app.flag("--no-energy", request.no_energy, "Measure no energies");
 }
 
 }  // namespace
 
 int run_lps_bench(int argc, char** argv) {
   Request request;
-  CLI::App app{"Runs a linear peridynamic solid on a GPU, and measures it", "cuboct-gpu lps"};
+  Command app("cuboct-gpu lps", "Runs a linear peridynamic solid on a GPU, and measures it");
   add_options(app, request);
   return run_command_line(app, argc, argv, [&] { return run(request); });
 }

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 
 #include "gpu_ref/messages.h"
 #include "gpu_ref/sample_relaxer.h"
 #include "hw/program/command_line.h"
 #include "hw/program/error_file.h"
+#include "hw/program/options.h"
 #include "model/base/interrupt.h"
 #include "model/base/resources.h"
 #include "model/run/element_run.h"
@@ -114,25 +114,23 @@ int run_and_tell(const Request& request) {
 
 int run_multiscale(int argc, char** argv) {
   Request request;
-  CLI::App app{
+  Command app(
+      "cuboct-gpu multiscale",
       "Computes a study of elements that carry their atoms, with the samples on a GPU; cuboct multiscale "
-      "--gpu starts it",
-      "cuboct-gpu multiscale"};
-  app.add_option("study", request.study, "Study file (TOML)")->required()->type_name("STUDY");
-  app.add_option("--progress", request.progress,
-                 "File of results, which a run that was cut goes on from and cuboct multiscale reads")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("--point", request.point, "Of the study's [compare]")
-      ->check(CLI::Range(1, 1 << 20))
-      ->type_name("N");
-  app.add_option("--device", request.device, "CUDA's ordinal")->capture_default_str();
-  app.add_option("--threads", request.threads, "Of the host; they change no bit; default: one per core")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
-  app.add_option("--status", request.before, "Words before the line of progress on a terminal");
-  app.add_option("--error", request.error, "File for what went wrong, in place of standard error")
-      ->type_name("FILE");
+      "--gpu starts it");
+  app.option("study", request.study, "Study file (TOML)").required().type_name("STUDY");
+  app.option("--progress", request.progress,
+             "File of results, which a run that was cut goes on from and cuboct multiscale reads")
+      .required()
+      .type_name("FILE");
+  app.option("--point", request.point, "Of the study's [compare]").range(1, 1 << 20).type_name("N");
+  app.option("--device", request.device, "CUDA's ordinal").show_default();
+  app.option("--threads", request.threads, "Of the host; they change no bit; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
+  app.option("--status", request.before, "Words before the line of progress on a terminal");
+  app.option("--error", request.error, "File for what went wrong, in place of standard error")
+      .type_name("FILE");
   return run_command_line(app, argc, argv, [&] { return run_and_tell(request); });
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "gpu_ref/rates.h"
 #include "gpu_ref/run.h"
 #include "gpu_ref/start.h"
+#include "hw/program/options.h"
 #include "hw/program/program.h"
 
 namespace cuboct::gpu {
@@ -99,32 +99,31 @@ class GpuProgram : public EngineProgram {
     abilities.forces = abilities.checkpoints = true;
   }
 
-  void add_options(CLI::App& app) override {
-    app.add_option(
-        "--start", start_,
-        "Trace with a state in real numbers; its last one is where the run starts, not the scene's");
-    app.add_option("--precision", precision_, "fixed (golden's bits), float or double")
-        ->check(CLI::IsMember({"fixed", "float", "double"}))
-        ->capture_default_str();
-    devices_ = app.add_option("--devices", choice_.engine.devices,
-                              "CUDA's ordinals, one per slab of the scene; the first device without it")
-                   ->delimiter(',');
-    app.add_option("--gpus", gpus_, "The first N devices")->check(CLI::Range(1, 64))->excludes(devices_);
-    app.add_option("--block", choice_.engine.block, "Threads of a block")->capture_default_str();
-    app.add_flag("--joules", joules_,
-                 "Measure the devices' energy, by the driver: they rest for two seconds first");
-    app.add_option("--repeats", repeats_,
-                   "With --bench: then steps per second of whole runs, measured so many times")
-        ->check(CLI::Range(1, 1000));
-    app.add_option("--seconds", seconds_, "Of each of --repeats, at least")
-        ->check(CLI::Range(1e-3, 1e4))
-        ->capture_default_str();
-    app.add_flag("--list", list_, "Print the devices, and no more");
+  void add_options(Command& app) override {
+    app.option("--start", start_,
+               "Trace with a state in real numbers; its last one is where the run starts, not the scene's");
+    app.option("--precision", precision_, "fixed (golden's bits), float or double")
+        .one_of({"fixed", "float", "double"})
+        .show_default();
+    const Option devices =
+        app.option("--devices", choice_.engine.devices,
+                   "CUDA's ordinals, one per slab of the scene; the first device without it")
+            .delimiter(',')
+            .given(devices_given_);
+    app.option("--gpus", gpus_, "The first N devices").range(1, 64).excludes(devices);
+    app.option("--block", choice_.engine.block, "Threads of a block").show_default();
+    app.flag("--joules", joules_,
+             "Measure the devices' energy, by the driver: they rest for two seconds first");
+    app.option("--repeats", repeats_,
+               "With --bench: then steps per second of whole runs, measured so many times")
+        .range(1, 1000);
+    app.option("--seconds", seconds_, "Of each of --repeats, at least").range(1e-3, 1e4).show_default();
+    app.flag("--list", list_, "Print the devices, and no more");
   }
 
   bool prepare(ProgramOptions& options) override;
   void begin(Scene& scene) override {
-    found_ = choose_devices(gpus_, devices_->count() > 0, choice_.engine);
+    found_ = choose_devices(gpus_, devices_given_, choice_.engine);
     for (const Device& device : found_) names_.push_back(device.name);
     if (!start_.empty()) start_from(start_, scene);
   }
@@ -138,11 +137,10 @@ class GpuProgram : public EngineProgram {
 
  private:
   std::string start_, precision_ = "fixed";
-  CLI::Option* devices_ = nullptr;
   GpuChoice choice_;
   int gpus_ = 0, repeats_ = 0;
   double seconds_ = 0.3;
-  bool joules_ = false, list_ = false;
+  bool joules_ = false, list_ = false, devices_given_ = false;
   std::vector<Device> found_;
   std::vector<std::string> names_;
   std::optional<Joules> meter_;

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -12,6 +11,7 @@
 #include "gpu_ref/messages.h"
 #include "gpu_ref/samples.h"
 #include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/bond_order/tersoff_parameters.h"
@@ -163,31 +163,20 @@ int run(const Request& request) {
 
 int run_samples_bench(int argc, char** argv) {
   Request request;
-  CLI::App app{"Measures how fast a GPU computes small periodic samples under Tersoff's potential",
-               "cuboct-gpu samples"};
-  app.add_option("--set", request.set,
-                 "Parameters: " + fmt::format("{}", fmt::join(tersoff_set_names(), ", ")))
-      ->capture_default_str();
-  app.add_option("--cubes", request.cubes, "Cubes of eight atoms along each edge")
-      ->check(CLI::Range(1, 8))
-      ->capture_default_str();
-  app.add_option("--samples", request.samples, "How many")
-      ->check(CLI::Range(1, 1 << 20))
-      ->capture_default_str();
-  app.add_option("--precision", request.precision, "float or double")
-      ->check(CLI::IsMember({"float", "double"}))
-      ->capture_default_str();
-  app.add_option("--device", request.device, "CUDA's ordinal")->capture_default_str();
-  app.add_option("--repeats", request.repeats, "Of which the median is told")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  app.add_option("--seconds", request.seconds, "Length of a repeat")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->capture_default_str();
-  app.add_option("--tolerance", request.tolerance, "Largest force at rest, eV/angstrom")
-      ->check(CLI::Range(1e-9, 1.0))
-      ->capture_default_str();
-  app.add_flag("--no-energy", request.no_energy, "Measure no energies");
+  Command app("cuboct-gpu samples",
+              "Measures how fast a GPU computes small periodic samples under Tersoff's potential");
+  app.option("--set", request.set, "Parameters: " + fmt::format("{}", fmt::join(tersoff_set_names(), ", ")))
+      .show_default();
+  app.option("--cubes", request.cubes, "Cubes of eight atoms along each edge").range(1, 8).show_default();
+  app.option("--samples", request.samples, "How many").range(1, 1 << 20).show_default();
+  app.option("--precision", request.precision, "float or double").one_of({"float", "double"}).show_default();
+  app.option("--device", request.device, "CUDA's ordinal").show_default();
+  app.option("--repeats", request.repeats, "Of which the median is told").range(1, 1000).show_default();
+  app.option("--seconds", request.seconds, "Length of a repeat").range(1e-3, 1e4).show_default();
+  app.option("--tolerance", request.tolerance, "Largest force at rest, eV/angstrom")
+      .range(1e-9, 1.0)
+      .show_default();
+  app.flag("--no-energy", request.no_energy, "Measure no energies");
   return run_command_line(app, argc, argv, [&] { return run(request); });
 }
 

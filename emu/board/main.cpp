@@ -2,11 +2,11 @@
 // cuboct-fpga: a scene on the board behind a serial port.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <limits>
 #include <optional>
 
 #include "emu/board/session.h"
+#include "hw/program/options.h"
 #include "hw/program/program.h"
 #include "model/base/standard_streams.h"
 
@@ -22,12 +22,12 @@ class BoardProgram : public EngineProgram {
     abilities.steps = std::numeric_limits<uint32_t>::max();
   }
 
-  void add_options(CLI::App& app) override {
-    app.add_option("--port", port_, "Serial port of the board, e.g. /dev/ttyUSB0")->required();
-    app.add_option("--baud", baud_, "Bits per second on it")->capture_default_str();
-    app.add_option("--timeout", timeout_, "Seconds of silence after which a request is sent again")
-        ->check(CLI::Range(0.001, 60.0))
-        ->capture_default_str();
+  void add_options(Command& app) override {
+    app.option("--port", port_, "Serial port of the board, e.g. /dev/ttyUSB0").required();
+    app.option("--baud", baud_, "Bits per second on it").show_default();
+    app.option("--timeout", timeout_, "Seconds of silence after which a request is sent again")
+        .range(0.001, 60.0)
+        .show_default();
   }
 
   EngineKind kind(Scene& scene, const Plan& plan, const ProgramOptions&) override {

@@ -3,9 +3,8 @@
 
 #include <malloc.h>
 
-#include <CLI/CLI.hpp>
-
 #include "emu/lattice/run.h"
+#include "hw/program/options.h"
 #include "hw/program/program.h"
 #include "model/run/start.h"
 
@@ -21,15 +20,14 @@ class LatticeProgram : public EngineProgram {
     choice_.engine.ranks = ranks;
   }
 
-  void add_options(CLI::App& app) override {
+  void add_options(Command& app) override {
     LatticeOptions& engine = choice_.engine;
-    app.add_option("--threads", engine.threads, "Threads; one per core without it")
-        ->check(CLI::Range(1, 4096));
-    app.add_flag("--no-quiescence", no_quiescence_, "Do not skip cells at rest; no bit changes");
-    app.add_option("--simd", engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
-    app.add_option("--cut", engine.cut, "How ranks share the cells: bricks, or slabs along x, y or z")
-        ->check(CLI::IsMember({"bricks", "x", "y", "z"}))
-        ->capture_default_str();
+    app.option("--threads", engine.threads, "Threads; one per core without it").range(1, 4096);
+    app.flag("--no-quiescence", no_quiescence_, "Do not skip cells at rest; no bit changes");
+    app.option("--simd", engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
+    app.option("--cut", engine.cut, "How ranks share the cells: bricks, or slabs along x, y or z")
+        .one_of({"bricks", "x", "y", "z"})
+        .show_default();
   }
 
   bool prepare(ProgramOptions&) override {

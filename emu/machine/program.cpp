@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
 
 #include "emu/machine/machine_engine.h"
 #include "hw/engine_kind.h"
+#include "hw/program/options.h"
 #include "hw/program/program.h"
 
 namespace cuboct::emu {
@@ -29,15 +29,15 @@ class MachineProgram : public EngineProgram {
     abilities.steps = std::numeric_limits<uint32_t>::max();
   }
 
-  void add_options(CLI::App& app) override {
-    app.add_option("--stall-rate", run_.stall_rate, "Share of cycles in which a link passes nothing")
-        ->check(CLI::Range(0.0, 0.99));
-    app.add_option("--stall-seed", run_.stall_seed, "Seed of the stalls")->capture_default_str();
-    app.add_option("--inject-faults", faults_,
-                   "Faults on the wires: their share of all beats, or their number in the run");
-    app.add_option("--fault-seed", run_.faults.seed, "Seed of the faults")->capture_default_str();
-    app.add_option("--threads", run_.threads, "Threads that step the nodes; default: one per core")
-        ->check(CLI::Range(1, 4096));
+  void add_options(Command& app) override {
+    app.option("--stall-rate", run_.stall_rate, "Share of cycles in which a link passes nothing")
+        .range(0.0, 0.99);
+    app.option("--stall-seed", run_.stall_seed, "Seed of the stalls").show_default();
+    app.option("--inject-faults", faults_,
+               "Faults on the wires: their share of all beats, or their number in the run");
+    app.option("--fault-seed", run_.faults.seed, "Seed of the faults").show_default();
+    app.option("--threads", run_.threads, "Threads that step the nodes; default: one per core")
+        .range(1, 4096);
     machine_.add_options(app);
   }
 

@@ -8,8 +8,8 @@
 #include "emu/machine/node_model.h"
 #include "hw/plan.h"
 
-namespace CLI {
-class App;
+namespace cuboct {
+class Command;
 }
 
 namespace cuboct::emu {
@@ -18,7 +18,7 @@ struct Machine {
   std::string name;         // "cuboct-systemc"
   std::string description;  // one line
   std::string engine;       // Trace::engine
-  std::function<void(CLI::App&)> add_options = [](CLI::App&) {};
+  std::function<void(Command&)> add_options = [](Command&) {};
   std::function<NodeFactory(const Plan&)> nodes;  // called once the plan is known
 };
 

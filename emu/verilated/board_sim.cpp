@@ -8,7 +8,6 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -18,6 +17,7 @@
 #include "emu/verilated/library.h"
 #include "emu/verilated/serial_line.h"
 #include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "hw/rtl_prefix.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
@@ -176,21 +176,18 @@ int simulate(const Request& request) {
 
 int main_of(int argc, char** argv) {
   Request request;
-  CLI::App app{"Simulates an emitted board behind a pseudo-terminal and prints its name", "cuboct-board-sim"};
-  app.add_option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR', or --bus")
-      ->required()
-      ->type_name("DIR");
-  app.add_option("--flip-rate", request.noise.flip, "Chance that a bit on the line is wrong")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--drop-rate", request.noise.drop, "Chance that a byte is lost")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--insert-rate", request.noise.insert, "Chance that a byte comes after a byte")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--seed", request.noise.seed, "Of the noise")->capture_default_str();
-  app.add_option("--skew", request.skew, "Per cent by which the host's bits are longer than the board's")
-      ->check(CLI::Range(-10.0, 10.0));
-  app.add_option("--build-dir", request.build_directory,
-                 "Where compiled boards are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
+  Command app("cuboct-board-sim", "Simulates an emitted board behind a pseudo-terminal and prints its name");
+  app.option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR', or --bus")
+      .required()
+      .type_name("DIR");
+  app.option("--flip-rate", request.noise.flip, "Chance that a bit on the line is wrong").range(0.0, 1.0);
+  app.option("--drop-rate", request.noise.drop, "Chance that a byte is lost").range(0.0, 1.0);
+  app.option("--insert-rate", request.noise.insert, "Chance that a byte comes after a byte").range(0.0, 1.0);
+  app.option("--seed", request.noise.seed, "Of the noise").show_default();
+  app.option("--skew", request.skew, "Per cent by which the host's bits are longer than the board's")
+      .range(-10.0, 10.0);
+  app.option("--build-dir", request.build_directory,
+             "Where compiled boards are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
   return run_command_line(app, argc, argv, [&] { return simulate(request); });
 }
 

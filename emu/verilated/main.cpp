@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <systemc>
 
 #include "emu/machine/program.h"
 #include "emu/verilated/verilated_node.h"
+#include "hw/program/options.h"
 #include "model/base/standard_streams.h"
 
 int sc_main(int argc, char** argv) {
@@ -17,9 +17,9 @@ int sc_main(int argc, char** argv) {
                     return verilated_nodes(
                         plan, build_directory.empty() ? default_build_directory() : build_directory);
                   }};
-  program.add_options = [&](CLI::App& app) {
-    app.add_option("--build-dir", build_directory,
-                   "Where compiled nodes are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
+  program.add_options = [&](cuboct::Command& app) {
+    app.option("--build-dir", build_directory,
+               "Where compiled nodes are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
   };
   return run_machine(argc, argv, program);
 }

@@ -3,24 +3,23 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
-#include <sstream>
 
+#include "hw/program/options.h"
 #include "model/base/text.h"
 
 namespace cuboct {
 
-std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv) {
+std::optional<int> parse_command_line(Command& app, int argc, char** argv) {
   try {
-    app.parse(argc, argv);
-    return {};
-  } catch (const CLI::ParseError& error) {
-    std::ostringstream help, errors;
-    const int code = app.exit(error, help, errors) == 0 ? 0 : 2;
-    fmt::print("{}", help.str());
-    fmt::print(stderr, "{}", block_text(errors.str()));
-    return code;
+    const auto asked = app.parse(std::vector<std::string>(argv + std::min(argc, 1), argv + argc));
+    if (!asked) return {};
+    fmt::print("{}", *asked);
+    return 0;
+  } catch (const WrongWords& error) {
+    fmt::print(stderr, "{}\nRun with --help for more information.\n", block_text(error.what()));
+    return 2;
   }
 }
 
@@ -30,7 +29,7 @@ std::optional<InputError> path_error(const std::exception& error) {
   return InputError(fmt::format("{}: {}", refusal->path1().string(), refusal->code().message()));
 }
 
-int run_command_line(CLI::App& app, int argc, char** argv, const std::function<int()>& run) {
+int run_command_line(Command& app, int argc, char** argv, const std::function<int()>& run) {
   if (const std::optional<int> ended = parse_command_line(app, argc, argv)) return *ended;
   try {
     return run();
@@ -42,7 +41,7 @@ int run_command_line(CLI::App& app, int argc, char** argv, const std::function<i
       fmt::print(stderr, "{}\n", refusal->told());
       return 2;
     }
-    fmt::print(stderr, "{}: {}\n", app.get_name(), block_text(error.what()));
+    fmt::print(stderr, "{}: {}\n", app.name(), block_text(error.what()));
     return 1;
   }
 }

@@ -7,21 +7,19 @@
 
 #include "model/base/error.h"
 
-namespace CLI {
-class App;
-}
-
 namespace cuboct {
+
+class Command;
 
 // Nothing where the words are right; else help on standard output and 0, or the error on standard error and
 // 2.
-std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv);
+std::optional<int> parse_command_line(Command& app, int argc, char** argv);
 
 // The same error as one of input, where it is the file system's refusal of a path that was asked for.
 std::optional<InputError> path_error(const std::exception& error);
 
 // What `run` returns; 2 for an InputError, 1 for another exception. The name of the app stands before the
 // latter's text.
-int run_command_line(CLI::App& app, int argc, char** argv, const std::function<int()>& run);
+int run_command_line(Command& app, int argc, char** argv, const std::function<int()>& run);
 
 }  // namespace cuboct

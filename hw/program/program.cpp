@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 
 #include "hw/program/command_line.h"
 #include "hw/program/error_file.h"
 #include "hw/program/frame_files.h"
+#include "hw/program/options.h"
 #include "hw/setup.h"
 #include "model/analysis/meter.h"
 #include "model/base/error_parts.h"
@@ -27,7 +26,7 @@ namespace {
 // What is parsed and then settled.
 struct Parsed {
   ProgramOptions options;
-  std::string frames_file, frame_files, begun, interval, error;
+  std::string frames_file, frame_files, begun, interval, error, log;
   bool frames_given = false, unpacked = false;
 };
 
@@ -137,51 +136,49 @@ int run(EngineProgram& program, Parsed& parsed) {
   return with_places(scene, arch, [&] { return run_scene(program, parsed, scene, arch); });
 }
 
-std::map<std::string, LogRows> rows_by_name() {
-  std::map<std::string, LogRows> rows;
-  for (const LogRows one : {LogRows::off, LogRows::quiet, LogRows::seconds, LogRows::parts})
-    rows.emplace(to_string(one), one);
-  return rows;
+LogRows rows_of(const std::string& name) {
+  for (const LogRows rows : {LogRows::quiet, LogRows::seconds, LogRows::parts})
+    if (name == to_string(rows)) return rows;
+  return LogRows::off;
 }
 
-void add_options(CLI::App& app, EngineProgram& program, Parsed& parsed) {
+void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
   ProgramOptions& options = parsed.options;
   RunRequest& run = options.run;
   const ProgramAbilities& can = program.abilities;
-  app.add_option("scene", options.scene, "Scene file (TOML)");
-  app.add_option("--arch", options.arch, "Machine description (TOML); the defaults without one");
-  app.add_option("--stage", options.stage, "Of a scene with [[stage]]: the one to run");
-  app.add_option("--from", options.from, "Directory of a run: this one begins with its last state");
-  app.add_option("--steps", options.steps, "Steps to run; the scene's own number without it");
-  app.add_option("--out", options.out, "Trace file to write (HDF5); --bench does without");
-  app.add_flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
-  app.add_option("--error", parsed.error, "File that takes an error, in place of standard error");
-  app.add_option("--frame-files", parsed.frame_files,
-                 "Each state that is kept goes into a file PREFIX.0, PREFIX.1, ... as it comes, none into "
-                 "the trace, for a reader "
-                 "who removes them: the program waits while 16 are there")
-      ->type_name("PREFIX");
-  app.add_option("--begun", parsed.begun, "File that is made when the steps begin");
-  app.add_flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
-  app.add_flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
-  app.add_flag("--until", run.until, "End where the scene's 'until' holds");
-  app.add_option("--hash-every", run.hash_every, "Steps between two hashes of the state; 0: none")
-      ->capture_default_str();
-  if (can.cycles) app.add_flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
-  if (can.forces) app.add_flag("--forces", run.forces, "Frames in real numbers hold the pair forces too");
+  app.option("scene", options.scene, "Scene file (TOML)");
+  app.option("--arch", options.arch, "Machine description (TOML); the defaults without one");
+  app.option("--stage", options.stage, "Of a scene with [[stage]]: the one to run");
+  app.option("--from", options.from, "Directory of a run: this one begins with its last state");
+  app.option("--steps", options.steps, "Steps to run; the scene's own number without it");
+  app.option("--out", options.out, "Trace file to write (HDF5); --bench does without");
+  app.flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
+  app.option("--error", parsed.error, "File that takes an error, in place of standard error");
+  app.option("--frame-files", parsed.frame_files,
+             "Each state that is kept goes into a file PREFIX.0, PREFIX.1, ... as it comes, none into "
+             "the trace, for a reader "
+             "who removes them: the program waits while 16 are there")
+      .type_name("PREFIX");
+  app.option("--begun", parsed.begun, "File that is made when the steps begin");
+  app.flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
+  app.flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
+  app.flag("--until", run.until, "End where the scene's 'until' holds");
+  app.option("--hash-every", run.hash_every, "Steps between two hashes of the state; 0: none")
+      .show_default()
+      .given(options.hashes_given);
+  if (can.cycles) app.flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
+  if (can.forces) app.flag("--forces", run.forces, "Frames in real numbers hold the pair forces too");
   if (can.checkpoints) {
-    app.add_option("--checkpoint", run.checkpoint.path,
-                   "File that the run can go on from; gone when it ends");
-    app.add_option("--checkpoint-every", parsed.interval, "'1000 steps', '30 s', '5 min' or '2 h'");
-    app.add_flag("--resume", run.checkpoint.resume, "Go on from the checkpoint");
+    app.option("--checkpoint", run.checkpoint.path, "File that the run can go on from; gone when it ends");
+    app.option("--checkpoint-every", parsed.interval, "'1000 steps', '30 s', '5 min' or '2 h'");
+    app.flag("--resume", run.checkpoint.resume, "Go on from the checkpoint");
   }
-  app.add_flag("--bench", options.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
-  app.add_option(
-         "--log", run.log,
-         "A table on standard error, a row each two 'seconds' or twenty as 'parts' of the run; 'off': a "
-         "line in place on a terminal; 'quiet': not even that")
-      ->transform(CLI::CheckedTransformer(rows_by_name()))
-      ->type_name("ROWS");
+  app.flag("--bench", options.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
+  app.option("--log", parsed.log,
+             "A table on standard error, a row each two 'seconds' or twenty as 'parts' of the run; 'off': a "
+             "line in place on a terminal; 'quiet': not even that")
+      .one_of({"off", "quiet", "seconds", "parts"})
+      .type_name("ROWS");
   program.add_options(app);
 }
 
@@ -209,17 +206,17 @@ void EngineProgram::print_end(const Plan& plan, const Trace& trace) {
 
 int run_program(int argc, char** argv, EngineProgram& program) {
   Parsed parsed;
-  CLI::App app{program.description, program.name};
+  Command app(program.name, program.description);
   add_options(app, program, parsed);
-  auto* frames = app.add_option("--frames", parsed.options.run.frames,
-                                "Steps whose states are kept; the first and the last without it")
-                     ->delimiter(',');
-  auto* frames_file =
-      app.add_option("--frames-file", parsed.frames_file, "The same from a file, one step per line")
-          ->excludes(frames);
+  const Option frames = app.option("--frames", parsed.options.run.frames,
+                                   "Steps whose states are kept; the first and the last without it")
+                            .delimiter(',')
+                            .given(parsed.frames_given);
+  app.option("--frames-file", parsed.frames_file, "The same from a file, one step per line")
+      .excludes(frames)
+      .given(parsed.frames_given);
   if (const std::optional<int> ended = parse_command_line(app, argc, argv)) return *ended;
-  parsed.frames_given = frames->count() > 0 || frames_file->count() > 0;
-  parsed.options.hashes_given = app.get_option("--hash-every")->count() > 0;
+  parsed.options.run.log = rows_of(parsed.log);
   const auto told = [&](const InputError& error, const std::string& text, int code) {
     try {
       if (!parsed.error.empty()) return write_error(parsed.error, error), code;

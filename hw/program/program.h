@@ -9,11 +9,9 @@
 #include "hw/plan.h"
 #include "model/run/record.h"
 
-namespace CLI {
-class App;
-}
-
 namespace cuboct {
+
+class Command;
 
 // What a program's command line said.
 struct ProgramOptions {
@@ -42,7 +40,7 @@ class EngineProgram {
   std::string description;  // one line
   ProgramAbilities abilities;
 
-  virtual void add_options(CLI::App&) {}
+  virtual void add_options(Command&) {}
   // Before the scene is read. Whether it has done all there is to do.
   virtual bool prepare(ProgramOptions&) { return false; }
   // The scene as the run begins with it.

@@ -107,6 +107,8 @@ TEST_F(LatticeProgram, TellsItsSpeed) {
 
 TEST_F(LatticeProgram, RefusesWhatItCannotDo) {
   expect_refusal("scenes/lj_block.toml", "--out is required\n");
+  expect_refusal("scenes/lj_block.toml --log rows",
+                 "--log: rows not in {off,quiet,seconds,parts}\nRun with --help for more information.\n");
   expect_refusal("scenes/lj_block.toml --out none/t.h5",
                  "cannot write none/t.h5: No such file or directory\n");
   expect_refusal("scenes/none.toml --out '" + path("t.h5") + "'",

@@ -9,12 +9,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <map>
 
+#include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "tests/verify/judge.h"
 
 namespace {
@@ -115,17 +116,16 @@ int run(const Request& r) {
 
 int main(int argc, char** argv) {
   Request r;
-  CLI::App app{"Judges the RTL of a node by one case", "rtl_judge"};
-  app.add_option("case", r.name, "Name of tests/support/cases.h, random_N, random_flat_N, fault_N")
-      ->required();
-  app.add_option("--cache", r.cache, "Where compiled nodes are kept")->required();
-  app.add_option("--changed", r.build.changed, "Modules in place of the library's");
-  app.add_option("--optimise", r.build.optimise, "Of the C++ compiler")->capture_default_str();
-  CLI::Option* const out = app.add_option("--out", r.out, "Verdicts are added to this file");
-  app.add_option("--mutants", r.mutants, "File of numbers")->needs(out);
-  app.add_option("--jobs,-j", r.jobs, "Mutants at a time")->capture_default_str();
-  app.add_flag("--coverage", r.build.coverage, "Counts lines, into $CUBOCT_COVERAGE");
-  CLI11_PARSE(app, argc, argv);
+  Command app("rtl_judge", "Judges the RTL of a node by one case");
+  app.option("case", r.name, "Name of tests/support/cases.h, random_N, random_flat_N, fault_N").required();
+  app.option("--cache", r.cache, "Where compiled nodes are kept").required();
+  app.option("--changed", r.build.changed, "Modules in place of the library's");
+  app.option("--optimise", r.build.optimise, "Of the C++ compiler").show_default();
+  const Option out = app.option("--out", r.out, "Verdicts are added to this file");
+  app.option("--mutants", r.mutants, "File of numbers").needs(out);
+  app.option("--jobs,-j", r.jobs, "Mutants at a time").show_default();
+  app.flag("--coverage", r.build.coverage, "Counts lines, into $CUBOCT_COVERAGE");
+  if (const auto ended = parse_command_line(app, argc, argv)) return *ended;
   try {
     return run(r);
   } catch (const std::exception& e) {

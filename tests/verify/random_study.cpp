@@ -6,13 +6,14 @@
 // the end. Exit status: 0, 1 where a seed failed, 2 where the command line is wrong.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "hw/program/command_line.h"
+#include "hw/program/options.h"
 #include "tests/verify/random_scene.h"
 
 namespace {
@@ -123,22 +124,21 @@ int run(const Request& r) {
 
 int main(int argc, char** argv) {
   Request r;
-  CLI::App app{"Random scenes, machines and stalls for the RTL", "rtl_random_study"};
-  app.add_option("--seeds", r.seeds, "A-B, or one")
-      ->required()
-      ->check(CLI::Validator(
-          [](std::string& text) {
-            const bool fine = !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos &&
-                              text.front() != '-' && text.back() != '-';
-            return fine ? std::string() : "expected A-B, two numbers, got " + text;
-          },
-          "A-B"));
-  app.add_option("--out", r.out, "A line per seed is added to this file")->required();
-  app.add_option("--cache", r.cache, "Where nodes are compiled")->required();
-  app.add_option("--minutes", r.minutes, "No further seed is begun after these");
-  app.add_flag("--draw", r.draw, "Golden and the native node only: what the seeds are stimuli of");
-  app.add_option("--changed", r.build.changed, "Modules in place of the library's");
-  CLI11_PARSE(app, argc, argv);
+  Command app("rtl_random_study", "Random scenes, machines and stalls for the RTL");
+  app.option("--seeds", r.seeds, "A-B, or one")
+      .required()
+      .check([](const std::string& text) {
+        const bool fine = !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos &&
+                          text.front() != '-' && text.back() != '-';
+        return fine ? std::string() : "expected A-B, two numbers, got " + text;
+      })
+      .type_name("A-B");
+  app.option("--out", r.out, "A line per seed is added to this file").required();
+  app.option("--cache", r.cache, "Where nodes are compiled").required();
+  app.option("--minutes", r.minutes, "No further seed is begun after these");
+  app.flag("--draw", r.draw, "Golden and the native node only: what the seeds are stimuli of");
+  app.option("--changed", r.build.changed, "Modules in place of the library's");
+  if (const auto ended = parse_command_line(app, argc, argv)) return *ended;
   try {
     return run(r);
   } catch (const std::exception& e) {

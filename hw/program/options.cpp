@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "hw/program/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+namespace cuboct {
+namespace {
+
+OptionText text_of(const CLI::Option& option) {
+  OptionText text;
+  for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) text.names.push_back("--" + name);
+  // "N" of "N:INT in [1 - 4096]": what an option accepts it says where it refuses.
+  if (option.get_expected_max() > 0)
+    text.type_name = option.get_type_name().substr(0, option.get_type_name().find(':'));
+  text.description = option.get_description();
+  text.shown_default = option.get_default_str();
+  text.required = option.get_required();
+  return text;
+}
+
+CommandText text_of(const CLI::App& app) {
+  CommandText text;
+  text.name = app.get_name();
+  text.description = app.get_description();
+  text.any_words = app.get_prefix_command();
+  for (const CLI::Option* option : app.get_options()) text.options.push_back(text_of(*option));
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    text.commands.push_back(text_of(*command));
+  return text;
+}
+
+class Help : public CLI::FormatterBase {
+ public:
+  explicit Help(std::function<std::string(const CommandText&)> text) : text_(std::move(text)) {}
+  std::string make_help(const CLI::App* app, std::string, CLI::AppFormatMode) const override {
+    return text_(text_of(*app));
+  }
+
+ private:
+  std::function<std::string(const CommandText&)> text_;
+};
+
+}  // namespace
+
+Option Option::required() { return Option(option_->required()); }
+Option Option::needs(Option other) { return Option(option_->needs(other.option_)); }
+Option Option::excludes(Option other) { return Option(option_->excludes(other.option_)); }
+Option Option::type_name(const std::string& name) { return Option(option_->type_name(name)); }
+Option Option::show_default() { return Option(option_->capture_default_str()); }
+Option Option::show_default(const std::string& text) { return Option(option_->default_str(text)); }
+Option Option::delimiter(char between) { return Option(option_->delimiter(between)); }
+Option Option::length(int values) { return Option(option_->expected(values)); }
+Option Option::one_word() { return Option(option_->allow_extra_args(false)); }
+
+template <typename Number>
+Option Option::range(Number least, Number most) {
+  return Option(option_->check(CLI::Range(least, most)));
+}
+template Option Option::range(int, int);
+template Option Option::range(uint32_t, uint32_t);
+template Option Option::range(uint64_t, uint64_t);
+template Option Option::range(double, double);
+
+Option Option::one_of(std::initializer_list<const char*> values) {
+  return Option(option_->check(CLI::IsMember(std::vector<std::string>(values.begin(), values.end()))));
+}
+
+Option Option::one_of(std::initializer_list<int> values) {
+  return Option(option_->check(CLI::IsMember(std::vector<int>(values))));
+}
+
+Option Option::check(const std::function<std::string(const std::string&)>& wrong) {
+  return Option(option_->check(wrong));
+}
+
+Option Option::given(bool& flag) {
+  return Option(option_->each([&flag](const std::string&) { flag = true; }));
+}
+
+Command::Command(const std::string& name, const std::string& description)
+    : app_(std::make_shared<CLI::App>(description, name)) {}
+
+std::string Command::name() const { return app_->get_name(); }
+CommandText Command::text() const { return text_of(*app_); }
+
+Command Command::command(const std::string& name, const std::string& description) {
+  return Command(app_->get_subcommand_ptr(app_->add_subcommand(name, description)));
+}
+
+void Command::require_command() { app_->require_subcommand(1); }
+
+template <typename Value>
+Option Command::option(const std::string& names, Value& value, const std::string& description) {
+  return Option(app_->add_option(names, value, description));
+}
+template Option Command::option(const std::string&, std::string&, const std::string&);
+template Option Command::option(const std::string&, int&, const std::string&);
+template Option Command::option(const std::string&, uint32_t&, const std::string&);
+template Option Command::option(const std::string&, uint64_t&, const std::string&);
+template Option Command::option(const std::string&, double&, const std::string&);
+template Option Command::option(const std::string&, std::optional<uint64_t>&, const std::string&);
+template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Command::option(const std::string&, std::vector<int>&, const std::string&);
+template Option Command::option(const std::string&, std::vector<uint64_t>&, const std::string&);
+
+Option Command::flag(const std::string& names, bool& value, const std::string& description) {
+  return Option(app_->add_flag(names, value, description));
+}
+
+void Command::help(const std::string& names, const std::string& description,
+                   std::function<std::string(const CommandText&)> text) {
+  app_->set_help_flag(names, description);
+  app_->formatter(std::make_shared<Help>(std::move(text)));
+}
+
+void Command::version(const std::string& names, std::function<std::string()> text,
+                      const std::string& description) {
+  app_->set_version_flag(names, std::move(text), description);
+}
+
+void Command::callback(std::function<void()> run) { app_->callback(std::move(run)); }
+
+void Command::any_words() {
+  app_->prefix_command();
+  app_->set_help_flag();
+}
+
+std::optional<std::string> Command::parse(std::vector<std::string> words) {
+  std::ranges::reverse(words);  // as CLI11 takes them
+  try {
+    app_->parse(std::move(words));
+    return {};
+  } catch (const CLI::Success& asked) {
+    std::ostringstream text;
+    app_->exit(asked, text);
+    return text.str();
+  } catch (const CLI::Error& wrong) {
+    throw WrongWords(wrong.what());
+  }
+}
+
+}  // namespace cuboct
