@@ -29,23 +29,28 @@ void add(Hash& hash, const PairLaw& law) {
   for (int k = 1; k < kSamples; ++k) add(hash, law.force(law.cutoff() * k / kSamples));
 }
 
-void add(Hash& hash, const Rule& rule) {
-  for (size_t n = 0; n < rule.laws(); ++n) add(hash, rule.law_at(n));
+// What moves a type's particles, whatever its bonds are.
+void add_types(Hash& hash, const Rule& rule) {
   for (size_t i = 0; i < rule.types.size(); ++i) {
     const ParticleType& type = rule.types[i];
     add(hash, rule.mass_of(static_cast<int>(i)));
     for (const bool imposed : type.imposed) hash.add(imposed);
     for (const Vec3& value : {type.velocity, type.gravity}) add(hash, value);
     for (const double value : {type.pd ? 1.0 : 0.0, type.kp, type.kd}) add(hash, value);
+  }
+  add(hash, rule.damping.coefficient);
+}
+
+void add_pairs(Hash& hash, const Rule& rule) {
+  for (size_t n = 0; n < rule.laws(); ++n) add(hash, rule.law_at(n));
+  for (size_t i = 0; i < rule.types.size(); ++i)
     for (size_t j = 0; j < rule.types.size(); ++j) {
       const int a = static_cast<int>(i), b = static_cast<int>(j);
       add(hash, rule.strength_of(a, b));
       hash.add(rule.only_touch(a, b));
       hash.add(static_cast<int64_t>(rule.law_index_of(a, b)));
     }
-  }
   add(hash, rule.contact_distance);
-  add(hash, rule.damping.coefficient);
 }
 
 }  // namespace
@@ -72,13 +77,21 @@ Plan real_plan_of(const Scene& scene, const Arch& arch) {
   if (const RoundsRule* rounds = rounds_of(scene.rule); rounds != nullptr) {
     for (const DeclarationLine& line : rounds->settings()) add(hash, line.name + line.text + line.note);
   } else {
-    add(hash, scene.rule);
+    add_pairs(hash, scene.rule);
   }
+  add_types(hash, scene.rule);
   add(hash, scene.rule.dt);
+  add(hash, scene.periodic.extent);
+  if (scene.loading) {
+    for (const uint64_t value : {scene.loading->every, scene.loading->evaluations})
+      hash.add(static_cast<int64_t>(value));
+    add(hash, scene.loading->tolerance);
+  }
   for (size_t i = 0; i < scene.body.size(); ++i) {
     add(hash, scene.packing().x[i]);
     add(hash, scene.body.x[i]);
     add(hash, scene.body.v[i]);
+    if (!scene.body.u.empty()) add(hash, scene.body.u[i]);
     hash.add(scene.body.type[i]);
   }
   if (scene.body.bonds)
