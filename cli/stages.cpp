@@ -149,11 +149,12 @@ int run_stages(const StageRun& request,
     if (!whole) break;
     if (!request.json) fmt::print("\n");
   }
-  if (!request.only.empty()) return code;
+  if (!request.only.empty() && !request.json) return code;
   Items items;
   for (size_t n = first; n < end; ++n) tell(items, request, n);
   const std::string all = json_of(request, first, end);
-  write_text(request.out + "/summary.json", all);
+  // DIR's own summary is that of all stages.
+  if (request.only.empty()) write_text(request.out + "/summary.json", all);
   fmt::print("{}", request.json ? all : items.text());
   return code;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "model/base/output.h"
 #include "model/scene/config.h"
@@ -103,6 +104,15 @@ TEST(Stages, ARampIsRunInParts) {
     EXPECT_NEAR(end.back(), way, 1e-3 * whole);
   }
   EXPECT_EQ(contents(bench.path("a/5-hold/run.toml")).find("../4-up-4") == std::string::npos, false);
+  EXPECT_EQ(bench.cuboct({"run", scene, "--stage", "up", "--out", bench.path("b")}).code, 0);
+  // In JSON too: of the stages that it runs, and DIR's summary of all stays as it was.
+  const Answer json = bench.cuboct({"run", scene, "--stage", "up-2", "--out", bench.path("b"), "--json"});
+  ASSERT_EQ(json.code, 0) << json.err;
+  const auto stages = nlohmann::json::parse(json.out)["stages"];
+  ASSERT_EQ(stages.size(), 1u);
+  EXPECT_EQ(stages[0]["name"], "up-2");
+  EXPECT_EQ(stages[0]["summary"]["steps"]["value"], 6);
+  EXPECT_FALSE(fs::exists(bench.path("b/summary.json")));
   EXPECT_EQ(bench.cuboct({"run", scene, "--stage", "up", "--out", bench.path("b")}).code, 0);
   EXPECT_TRUE(fs::exists(bench.path("b/4-up-4/trace.h5")));
   EXPECT_FALSE(fs::exists(bench.path("b/5-hold")));
