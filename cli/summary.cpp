@@ -84,7 +84,9 @@ void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curv
     const auto [low, high] = std::minmax_element(curve.value.begin(), curve.value.end());
     if (!is_energy(curve)) items.add_range(curve.name, curve.value.back(), *low, *high, curve.unit);
     if (curve.name != "energy.total" || curve.value.size() < 2) continue;
-    if (keeps_energy(scene.rule, scene.periodic))
+    if (scene.loading)
+      energy("energy change", curve.value.back() - curve.value.front(), "by the loading");
+    else if (keeps_energy(scene.rule, scene.periodic))
       energy("energy drift", *high - *low, "largest minus smallest total");
     else
       energy("energy change", curve.value.back() - curve.value.front(), "driven or damped");
