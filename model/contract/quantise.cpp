@@ -216,16 +216,16 @@ FixedRule::Error error_of(const FixedRule& fixed, const Rule& rule, size_t n, do
   FixedRule::Error error;
   const FixedTable& table = fixed.force;
   const double unit = std::ldexp(1.0, -table.value_frac) * rule.mass / (rule.dt * rule.dt) / scale;
+  // Powers of two, so that no product is rounded.
+  const double whole = std::ldexp(1.0, 2 * table.difference_frac), share = 1 / whole;
   double largest = 0;
   constexpr int kSamples = 64;  // per bin
   for (uint32_t k = 0; k < bins_used(table); ++k) {
     const double a = bin_start(table, k), b = bin_start(table, k + 1);
     for (int sample = 0; sample < kSamples; ++sample) {
-      const auto r2 = static_cast<uint64_t>(
-          std::ldexp(a + (b - a) * (sample + 0.5) / kSamples, 2 * table.difference_frac));
+      const auto r2 = static_cast<uint64_t>((a + (b - a) * (sample + 0.5) / kSamples) * whole);
       if (r2 == 0 || r2 >= fixed.cutoff2) continue;
-      const double r =
-          std::sqrt(std::ldexp(static_cast<double>(r2), -2 * table.difference_frac)) * fixed.cell_edge;
+      const double r = std::sqrt(static_cast<double>(r2) * share) * fixed.cell_edge;
       if (r < nearest) continue;
       const double exact = law.force(std::min(r, last));
       const double off =

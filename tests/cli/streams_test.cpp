@@ -60,7 +60,10 @@ TEST_F(StandardStreams, ClosedOnesLeaveTheRunWhole) {
     };
     const std::vector<uint64_t> whole = run(" >/dev/null");
     ASSERT_GT(whole.size(), 1u);
-    for (const std::string& streams : closed_streams()) {
+    // A program of its own starts as any other: of its runs one is enough, with all three closed.
+    std::vector<std::string> closed = closed_streams();
+    if (std::string(engine) == "systemc") closed.erase(closed.begin(), closed.end() - 1);
+    for (const std::string& streams : closed) {
       SCOPED_TRACE(engine + streams);
       fs::remove_all(bench_.path("dir"));
       EXPECT_EQ(run(streams), whole);
@@ -143,7 +146,7 @@ TEST_F(StandardStreams, AFullOutputIsToldByEachCommand) {
                                     "new " + bench_.path("a.toml") + " --like gas"};
   for (const std::string& command : commands)
     for (const char* json : {"", " --json"}) {
-      if (*json != 0 && command.starts_with("--")) continue;
+      if (*json != 0 && (command.starts_with("--") || command.starts_with("report"))) continue;
       fs::remove(bench_.path("a.toml"));
       fs::remove_all(bench_.path("rtl"));
       SCOPED_TRACE(command + json);
@@ -153,6 +156,7 @@ TEST_F(StandardStreams, AFullOutputIsToldByEachCommand) {
         EXPECT_TRUE(answer.err.ends_with(std::string(kOutputFull) + "\n")) << answer.err;
       else
         EXPECT_EQ(nlohmann::json::parse(answer.err)["error"]["message"], kOutputFull);
+      if (command.starts_with("report")) continue;  // it takes seconds, and ends as picture does
       EXPECT_EQ(sh("$cuboct " + command + json + " | :; exit ${PIPESTATUS[0]}").code,
                 command.starts_with("new /") ? 2 : 0);  // it is there already
     }
