@@ -10,6 +10,7 @@
 #include "model/analysis/state_reader.h"
 #include "model/analysis/strain.h"
 #include "model/base/parallel.h"
+#include "model/contract/fixed_step.h"
 #include "model/contract/law_energies.h"
 
 namespace cuboct {
@@ -72,11 +73,34 @@ std::vector<T> by_block(const NearPairs& near, const T& zero, int threads, const
   return sums;
 }
 
-// A block's pairs, and what they need of the law: in arrays, so that one call serves all.
-struct BlockPairs {
-  std::vector<uint32_t> i, j;
-  std::vector<double> r, energy;  // m, J
+struct PairEnergy {
+  double energy = 0;  // J
+  ClosestPair closest;
+  std::vector<PairAcross> across;
 };
+
+// Each pair by the law of its two types, in doubles: as Rule::pair_energy() has it, but a call for each law.
+void energies_by_law(const Rule& rule, const std::vector<Particle>& particles, const PairDistances& pairs,
+                     std::span<double> energy) {
+  thread_local std::vector<size_t> those;
+  thread_local std::vector<double> r, of;
+  for (size_t law = 0; law < rule.laws(); ++law) {
+    those.clear(), r.clear();
+    for (size_t k = 0; k < pairs.count; ++k) {
+      const int type_i = particles[pairs.i[k]].type, type_j = particles[pairs.j[k]].type;
+      if (&rule.law_of(type_i, type_j) != &rule.law_at(law)) continue;
+      those.push_back(k), r.push_back(pairs.r[k]);
+    }
+    of.resize(r.size());
+    energies_of(rule.law_at(law), r, of);
+    for (size_t n = 0; n < those.size(); ++n) {
+      const size_t k = those[n];
+      const int type_i = particles[pairs.i[k]].type, type_j = particles[pairs.j[k]].type;
+      energy[k] = rule.only_touch(type_i, type_j) ? rule.pair_energy(type_i, type_j, r[n])
+                                                  : of[n] * rule.strength_of(type_i, type_j);
+    }
+  }
+}
 
 // Whether all pairs have the force of one law, as it is.
 bool one_law(const Rule& rule) {
@@ -86,24 +110,18 @@ bool one_law(const Rule& rule) {
   return rule.law_index.empty() && rule.contact.empty() && std::ranges::all_of(rule.strength, ones);
 }
 
-struct PairEnergy {
-  double energy = 0;  // J
-  ClosestPair closest;
-};
-
-// By the pair law in doubles.
-void add_energies(const Rule& rule, const std::vector<Particle>& particles, BlockPairs& pairs,
+void add_energies(const Rule& rule, const std::vector<Particle>& particles, const PairDistances& pairs,
                   PairEnergy& sum) {
-  pairs.energy.resize(pairs.r.size());
+  thread_local std::vector<double> energy;
+  energy.resize(std::max(energy.size(), pairs.count));
+  const std::span<const double> r(pairs.r.data(), pairs.count);
   if (one_law(rule))
-    energies_of(*rule.law, pairs.r, pairs.energy);
+    energies_of(*rule.law, r, {energy.data(), pairs.count});
   else
-    for (size_t k = 0; k < pairs.r.size(); ++k)
-      pairs.energy[k] = rule.pair_energy(particles[pairs.i[k]].type, particles[pairs.j[k]].type, pairs.r[k]);
-  for (size_t k = 0; k < pairs.r.size(); ++k) {
-    sum.energy += pairs.energy[k];
-    if (pairs.r[k] < sum.closest.r)
-      sum.closest = {particles[pairs.i[k]].id, particles[pairs.j[k]].id, pairs.r[k]};
+    energies_by_law(rule, particles, pairs, energy);
+  for (size_t k = 0; k < pairs.count; ++k) {
+    sum.energy += energy[k];
+    if (r[k] < sum.closest.r) sum.closest = {particles[pairs.i[k]].id, particles[pairs.j[k]].id, r[k]};
   }
 }
 
@@ -159,7 +177,7 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, const NearPairs& near, int threads,
-                  ClosestPair* closest) {
+                  ClosestPair* closest, std::vector<PairAcross>* across) {
   const double length = std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac());
   const double speed = velocity_unit(fixed);
   std::vector<double> masses;  // by type
@@ -190,18 +208,15 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
   const double cutoff = rule.cutoff();
   const std::vector<PairEnergy> parts =
       by_block(near, PairEnergy{}, threads, [&](size_t block, PairEnergy& part) {
-        thread_local BlockPairs pairs;
-        pairs.i.clear(), pairs.j.clear(), pairs.r.clear();
-        near.for_each(block, [&](uint32_t i, uint32_t j, const Int3& d) {
-          const double r = as_real(d).norm() * length;
-          if (r < cutoff) pairs.i.push_back(i), pairs.j.push_back(j), pairs.r.push_back(r);
-        });
+        thread_local PairDistances pairs;
+        near.distances(block, cutoff, pairs, part.across);
         add_energies(rule, state.particles, pairs, part);
       });
   PairEnergy pairs;
   for (const PairEnergy& part : parts) {
     pairs.energy += part.energy;
     if (part.closest.r < pairs.closest.r) pairs.closest = part.closest;
+    if (across) across->insert(across->end(), part.across.begin(), part.across.end());
   }
   sum.potential = pairs.energy;
   if (closest) *closest = pairs.closest;
@@ -212,7 +227,7 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
                   const State& state, const std::vector<Int3>& kicks, int threads, ClosestPair* closest) {
   NearPairs near(fixed, lattice, threads);
   near.take(state);
-  return energies(rule, fixed, lattice, origin, state, kicks, near, threads, closest);
+  return energies(rule, fixed, lattice, origin, state, kicks, near, threads, closest, nullptr);
 }
 
 Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& force) {
@@ -226,28 +241,63 @@ Vec3 acceleration(const Rule& rule, const Body& body, size_t i, const Vec3& forc
   return a;
 }
 
-Mat3 virial_stress(const FixedRule& rule, const State& state, double volume, const NearPairs& near,
-                   int threads) {
-  const double length = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
-  const double newtons = newtons_per_kick(rule);
-  const std::vector<Mat3> parts = by_block(near, Mat3(Mat3::Zero()), threads, [&](size_t block, Mat3& part) {
-    near.for_each(block, [&](uint32_t i, uint32_t j, const Int3& d) {
-      const Particle& a = state.particles[i];
-      const PairResult pair =
-          kick_on(rule, a, {a.x[0] + d[0], a.x[1] + d[1], a.x[2] + d[2]}, state.particles[j]);
-      if (pair.inside) part += newtons * as_real(pair.kick) * as_real(d).transpose();
-    });
-  });
-  Mat3 sum = Mat3::Zero();
-  for (const Mat3& part : parts) sum += part;
-  return sum * (length / volume);
+namespace {
+// A sum over 2^32 particles of kicks below 2^47 times positions below 2^48 has less.
+__extension__ using Int128 = __int128;
+}  // namespace
+
+// With k_ij the kick of a pair on i, d_ij = x_j - x_i + s_ij and s_ij the images' part of it, as k_ji =
+// -k_ij:
+//   sum over pairs of k_ij (x) d_ij = -sum over i of (sum over j of k_ij) (x) x_i + sum over pairs of k_ij
+//   (x) s_ij,
+// exact in integers. The first sum has the kicks at hand; the second is of pairs across a seam alone.
+Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+                   const std::vector<Int3>& kicks, const NearPairs& near,
+                   const std::vector<PairAcross>& across) {
+  Int128 sum[3][3] = {};
+  const auto add = [&](const Int3& kick, const std::array<Int128, 3>& at) {
+    for (size_t a = 0; a < 3; ++a)
+      for (size_t b = 0; b < 3; ++b) sum[a][b] += kick[a] * at[b];
+  };
+  const int frac = rule.widths.velocity_frac();
+  for (size_t i = 0; i < kicks.size(); ++i) {
+    const Particle& p = state.particles[i];
+    std::array<Int128, 3> at;
+    for (size_t a = 0; a < 3; ++a) at[a] = -((Int128{lattice.cell(p.cell)[a]} << frac) + p.x[a]);
+    add(kicks[i], at);
+  }
+  // Of each image the sum of its kicks: |kick| < 2^31, over 2^32 pairs.
+  std::array<Int3, 27> by_image{};
+  for (const auto& [i, j, image] : across) {
+    const Particle &a = state.particles[i], &b = state.particles[j];
+    const Int3 d = near.difference(i, j);
+    const auto pair =
+        pair_kick_of<PairResult>(rule, visible(rule, a.x), a.v, a.type,
+                                 visible(rule, {a.x[0] + d[0], a.x[1] + d[1], a.x[2] + d[2]}), b.v, b.type);
+    if (!pair.inside) continue;
+    Int3& sum_there = by_image[static_cast<size_t>(image[0] + 3 * image[1] + 9 * image[2] + 13)];
+    for (size_t axis = 0; axis < 3; ++axis) sum_there[axis] += pair.kick[axis];
+  }
+  for (int k = 0; k < 27; ++k)
+    add(by_image[static_cast<size_t>(k)],
+        {Int128{k % 3 - 1} * near.period()[0], Int128{k / 3 % 3 - 1} * near.period()[1],
+         Int128{k / 9 - 1} * near.period()[2]});
+  const double length = std::ldexp(rule.cell_edge, -frac);
+  Mat3 stress;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < 3; ++b) stress(a, b) = static_cast<double>(sum[a][b]);
+  return stress * (newtons_per_kick(rule) * length / volume);
 }
 
 Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
                    int threads) {
   NearPairs near(rule, lattice, threads);
   near.take(state);
-  return virial_stress(rule, state, volume, near, threads);
+  PairDistances pairs;
+  std::vector<PairAcross> across;
+  for (size_t block = 0; block < near.blocks(); ++block) near.distances(block, 0, pairs, across);
+  return virial_stress(rule, lattice, state, volume, summed_kicks(rule, lattice, state, threads), near,
+                       across);
 }
 
 double pressure(const Energies& energies, const Mat3& virial_stress, double volume) {

@@ -8,7 +8,7 @@
 
 #include "model/base/parallel.h"
 #include "model/contract/neighbours.h"
-#include "model/real/pair_kernel.h"
+#include "model/real/near_walk.h"
 
 namespace cuboct {
 namespace {
@@ -24,7 +24,10 @@ constexpr size_t kWorthAThread = 2000;  // particles
 }  // namespace
 
 NearPairs::NearPairs(const FixedRule& rule, const Lattice& lattice, int threads)
-    : lattice_(lattice), frac_(rule.widths.velocity_frac()), threads_(threads) {
+    : lattice_(lattice),
+      frac_(rule.widths.velocity_frac()),
+      threads_(threads),
+      unit_(std::ldexp(rule.cell_edge, -rule.widths.velocity_frac())) {
   // Forces see rounded differences.
   const int D = rule.widths.difference_frac;
   cutoff_ = std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)) + 2, -D);
@@ -64,19 +67,26 @@ void NearPairs::take(const State& state) {
   list();
 }
 
+void NearPairs::distances(size_t block, double cutoff, PairDistances& inside,
+                          std::vector<PairAcross>& across) const {
+  near_distances({x_.data(), period_, first_of(block), first_of(block + 1), first_.data(), other_.data()},
+                 unit_, cutoff, inside, across);
+}
+
 void NearPairs::list() {
   at_ = x_;
   states_ = 0;
+  ++lists_made_;
   Periodic periodic;
-  std::array<double, 3> box{};
-  for (size_t a = 0; a < 3; ++a) box[a] = periodic.extent[a] = lattice_.period()[a];
+  for (size_t a = 0; a < 3; ++a) periodic.extent[a] = lattice_.period()[a];
   std::vector<Vec3> place(x_.size());  // cells
   for (size_t i = 0; i < x_.size(); ++i)
     for (size_t a = 0; a < 3; ++a) place[i][a] = std::ldexp(static_cast<double>(x_[i][a]), -frac_);
   CellList cells(cutoff_, periodic, skin_);
   cells.build(place);
   const std::span<const uint32_t> order = cells.order();
-  const double range2 = std::pow((cutoff_ + skin_) * (1 + 1e-9), 2);
+  const NearWalk walk(cells, place, periodic);
+  const double range = (cutoff_ + skin_) * (1 + 1e-9);
   // Stretches of particles in the order of cells, each with the particles near it that have a larger id.
   const int threads = threads_ > 0 ? threads_ : usable_cores();
   const size_t parts = std::clamp<size_t>(x_.size() / kWorthAThread, 1, static_cast<size_t>(threads));
@@ -84,27 +94,11 @@ void NearPairs::list() {
   std::vector<uint32_t> count(x_.size());
   const auto begin_of = [&](size_t part) { return order.size() * part / parts; };
   for_each_part(parts, threads, [&](size_t p, int) {
-    std::vector<uint64_t> candidates, near;
-    std::vector<double> at[3];
-    int64_t home = -1;
-    for (size_t slot = begin_of(p); slot < begin_of(p + 1); ++slot) {
+    walk(range, begin_of(p), begin_of(p + 1), [&](size_t slot, std::span<const uint64_t> near) {
       const uint32_t i = order[slot];
-      if (const int64_t cell = cells.cell_at(place[i]); cell != home) {
-        home = cell;
-        candidates.clear();
-        for (auto& axis : at) axis.clear();
-        cells.for_each_near(cell, [&](int64_t other) {
-          for (uint32_t b = cells.begin_of(other); b < cells.end_of(other); ++b) {
-            candidates.push_back(order[b]);
-            for (size_t a = 0; a < 3; ++a) at[a].push_back(place[order[b]][static_cast<Eigen::Index>(a)]);
-          }
-        });
-        near.resize(candidates.size() + kNearerSpill);
-      }
-      const size_t n = nearer(at, candidates, place[i], box, range2, near);
-      for (size_t k = 0; k < n; ++k)
-        if (near[k] > i) found[p].push_back(static_cast<uint32_t>(near[k])), ++count[i];
-    }
+      for (const uint64_t one : near)
+        if (const auto j = static_cast<uint32_t>(one >> 32); j > i) found[p].push_back(j), ++count[i];
+    });
   });
   first_.assign(x_.size() + 1, 0);
   for (size_t i = 0; i < x_.size(); ++i) first_[i + 1] = first_[i] + count[i];
@@ -113,10 +107,7 @@ void NearPairs::list() {
     auto from = found[p].begin();
     for (size_t slot = begin_of(p); slot < begin_of(p + 1); ++slot) {
       const uint32_t i = order[slot];
-      const auto others = other_.begin() + static_cast<ptrdiff_t>(first_[i]);
-      std::copy_n(from, count[i], others);
-      // The cells' order is that of this state; sums must be those of a run that lists at another.
-      std::sort(others, others + static_cast<ptrdiff_t>(count[i]));
+      std::copy_n(from, count[i], other_.begin() + static_cast<ptrdiff_t>(first_[i]));
       from += count[i];
     }
   });

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/analysis/near_kernel.h"
 #include "model/contract/lattice.h"
 #include "model/contract/state.h"
 
@@ -26,15 +27,18 @@ class NearPairs {
   static constexpr size_t kBlock = 1024;
   size_t blocks() const { return (x_.size() + kBlock - 1) / kBlock; }
   size_t first_of(size_t block) const { return std::min(x_.size(), block * kBlock); }
-  // Calls see(i, j, x_j - x_i in P+G fractional bits, of the nearest image) for the block's particles i in
-  // order of their ids, and for each the listed j > i in theirs: the pairs inside the cutoff, and some
-  // beyond.
-  template <typename See>
-  void for_each(size_t block, const See& see) const {
-    for (size_t i = first_of(block); i < first_of(block + 1); ++i)
-      for (size_t k = first_[i]; k < first_[i + 1]; ++k)
-        see(static_cast<uint32_t>(i), other_[k], between(x_[i], x_[other_[k]]));
-  }
+  // The block's pairs nearer than `cutoff` (m): its particles in order of their ids, and with each those of
+  // larger id in theirs. Those that meet through a seam, at this distance or somewhat beyond, go into
+  // `across`.
+  void distances(size_t block, double cutoff, PairDistances& inside, std::vector<PairAcross>& across) const;
+
+  // x_j - x_i of the nearest image, P+G fractional bits.
+  Int3 difference(uint32_t i, uint32_t j) const { return between(x_[i], x_[j]); }
+  const Int3& period() const { return period_; }  // P+G fractional bits; 0: none
+
+  // What readings cost: lists so far, and pairs in the last, each of which a state's reading looks at once.
+  uint64_t lists_made() const { return lists_made_; }
+  uint64_t pairs_listed() const { return other_.size(); }
 
  private:
   // Modulo 2^64, as all that is wanted are differences over a few cells.
@@ -53,10 +57,12 @@ class NearPairs {
 
   const Lattice& lattice_;
   int frac_, threads_;
-  double cutoff_;         // cells
-  Int3 period_{};         // P+G fractional bits; 0: none
-  double skin_ = 0;       // cells
-  uint64_t states_ = 0;   // that the list has served
+  double unit_;          // m, of the last of P+G fractional bits
+  double cutoff_;        // cells
+  Int3 period_{};        // P+G fractional bits; 0: none
+  double skin_ = 0;      // cells
+  uint64_t states_ = 0;  // that the list has served
+  uint64_t lists_made_ = 0;
   std::vector<Int3> x_;   // by id, from cell (0, 0, 0)
   std::vector<Int3> at_;  // where the list found them
   std::vector<size_t> first_;

@@ -25,9 +25,12 @@ Reading StateReader::read(const State& state, const Asked& asked, std::vector<In
   if (!asked.energies) return reading;
   near_.take(state);
   ClosestPair closest;
-  reading.energies = energies(rule_, fixed_, lattice_, origin_, state, kicks, near_, threads_, &closest);
+  std::vector<PairAcross> across;
+  reading.energies =
+      energies(rule_, fixed_, lattice_, origin_, state, kicks, near_, threads_, &closest, &across);
   if (asked.watch) asked.watch->see(fixed_, lattice_, origin_, state, kicks, reading.energies, closest);
-  if (asked.volume > 0) reading.stress = virial_stress(fixed_, state, asked.volume, near_, threads_);
+  if (asked.volume > 0)
+    reading.stress = virial_stress(fixed_, lattice_, state, asked.volume, kicks, near_, across);
   return reading;
 }
 

@@ -12,9 +12,11 @@ namespace cuboct {
 // As in measure.h, of a state that `near` has taken.
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, const NearPairs& near, int threads,
-                  ClosestPair* closest);
-Mat3 virial_stress(const FixedRule& rule, const State& state, double volume, const NearPairs& near,
-                   int threads);
+                  ClosestPair* closest, std::vector<PairAcross>* across);
+// `across`: as energies() finds them.
+Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,
+                   const std::vector<Int3>& kicks, const NearPairs& near,
+                   const std::vector<PairAcross>& across);
 
 // Reads the states of one run, in the order of their steps.
 class StateReader {

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "model/analysis/strain.h"
 #include "model/analysis/unstable.h"
 #include "model/base/parallel.h"
+#include "model/contract/fixed_step.h"
 #include "model/contract/law.h"
 #include "model/contract/neighbours.h"
+#include "model/real/near_walk.h"
 #include "model/scene/scene_parts.h"
 
 namespace cuboct {
@@ -72,6 +75,28 @@ bool in_balance(const Rule& rule, const Body& body, const Periodic& periodic, do
     force[j] += f;
   });
   return std::all_of(force.begin(), force.end(), [&](const Vec3& f) { return f.norm() <= 1e-4 * pull; });
+}
+
+// Of a body some pair is as near as a bond at rest, or few are at all: those are looked for first.
+ClosestPair closest_of(const Rule& rule, const std::vector<Vec3>& x, const Periodic& periodic) {
+  const double bond = std::min(1.01 * bond_length(*rule.law), rule.cutoff());
+  ClosestPair closest;
+  for (const double range : {bond, rule.cutoff()}) {
+    CellList cells(range, periodic);
+    cells.build(x);
+    const std::span<const uint32_t> ids = cells.order();
+    NearWalk(cells, x, periodic)(range, 0, x.size(), [&](size_t slot, std::span<const uint64_t> near) {
+      for (const uint64_t one : near) {
+        const uint32_t i = ids[slot], j = static_cast<uint32_t>(one >> 32);
+        if (j <= i) continue;
+        const double r = cells.difference(x[i], x[j]).norm();
+        const auto is_less = std::tuple(r, i, j) < std::tuple(closest.r, closest.i, closest.j);
+        if (r > 0 && is_less) closest = {i, j, r};
+      }
+    });
+    if (std::isfinite(closest.r)) break;
+  }
+  return closest;
 }
 
 bool imposed_all(const ParticleType& type) { return type.imposed[0] && type.imposed[1] && type.imposed[2]; }
@@ -413,7 +438,8 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
     for (size_t id = begin; id < end; ++id) {
       const Particle& p = state.particles[id];
       v[id] = real(p.v);
-      next[id] = real(finish(rule, kicks[id], p.x, p.v, p.u, p.type).v);
+      // In place, so that what is not used is not computed.
+      next[id] = real(finish_of<FinishResult>(rule, kicks[id], p.x, p.v, p.u, p.type).v);
     }
   };
   for_each_range(v.size(), kWorthAThread, move, threads_);
@@ -445,11 +471,7 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
   if (!body.u.empty()) moment.u = [&](uint32_t id) { return body.u[id]; };
   moment.force = [&](uint32_t id) { return force[id]; };
   moment.energies = energies;
-  CellList cells(rule.cutoff(), scene_.periodic);
-  cells.build(body.x);
-  cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
-    if (r < moment.closest.r) moment.closest = {i, j, r};
-  });
+  moment.closest = closest_of(rule, body.x, scene_.periodic);
   see(moment);
 }
 

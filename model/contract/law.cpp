@@ -38,6 +38,7 @@ class CoredLaw : public PairLaw {
   }
   double cutoff() const final { return cutoff_; }
   double core() const final { return core_; }
+  EnergyEnds ends() const { return {core_, cutoff_, core_energy_, core_slope_}; }
 
  protected:
   CoredLaw(const char* name, double core, double cutoff) : core_(core), cutoff_(cutoff) {
@@ -74,6 +75,7 @@ class LennardJones final : public CoredLaw {
     set_core();
   }
   LawForm form() const override { return LennardJonesForm{epsilon_, sigma_, -end_force_}; }
+  LennardJonesEnergy energies() const { return {sigma_, 4 * epsilon_, end_, end_energy_, end_force_}; }
 
  private:
   double sixth(double r) const {
@@ -112,6 +114,13 @@ class HermiteLaw final : public CoredLaw {
         energy_(r_.size()) {
     for (size_t k = r_.size() - 1; k-- > 0;) energy_[k] = energy_[k + 1] + rest_of_piece(k, 0);
     set_core();
+    for (size_t k = 0; k + 1 < r_.size(); ++k) {
+      const Piece p = piece(k);
+      const std::array<double, 4> c{p.c0, p.c1 / 2, p.c2 / 3, p.c3 / 4};
+      const std::array<double, CubicEnergy::terms> terms{r_[k], p.h,  energy_[k + 1], integral(p, 1),
+                                                         c[0],  c[1], c[2],           c[3]};
+      for (size_t of = 0; of < terms.size(); ++of) energies_.term[of].push_back(terms[of]);
+    }
   }
   LawForm form() const override {
     std::vector<CubicPiece> pieces;
@@ -121,6 +130,7 @@ class HermiteLaw final : public CoredLaw {
     }
     return pieces;
   }
+  const CubicEnergy& energies() const { return energies_; }
 
  private:
   // On piece k with s = (r - r[k])/h:  f = f0 + h m0 s + c2 s^2 + c3 s^3.
@@ -131,13 +141,14 @@ class HermiteLaw final : public CoredLaw {
     const double h = r_[k + 1] - r_[k], rise = f_[k + 1] - f_[k];
     return {h, f_[k], h * m_[k], 3 * rise - h * (2 * m_[k] + m_[k + 1]), h * (m_[k] + m_[k + 1]) - 2 * rise};
   }
+  // Of the force over a piece up to s, in widths.
+  static double integral(const Piece& p, double s) {
+    return s * (p.c0 + s * (p.c1 / 2 + s * (p.c2 / 3 + s * (p.c3 / 4))));
+  }
   // Integral of the force from s to the end of piece k.
   double rest_of_piece(size_t k, double s) const {
     const Piece p = piece(k);
-    const auto integral = [&](double t) {
-      return t * (p.c0 + t * (p.c1 / 2 + t * (p.c2 / 3 + t * (p.c3 / 4))));
-    };
-    return p.h * (integral(1) - integral(s));
+    return p.h * (integral(p, 1) - integral(p, s));
   }
   double outer_force(double r) const override {
     const size_t k = piece_of(r_, r);
@@ -158,6 +169,7 @@ class HermiteLaw final : public CoredLaw {
 
   std::vector<double> r_, f_, m_;
   std::vector<double> energy_;  // at the points
+  CubicEnergy energies_;
 };
 
 // The slope at an end by the parabola through three points, limited so that the end piece stays monotone (the
@@ -346,15 +358,15 @@ std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch,
                    "the presets are elastic, brittle, ductile and viscous");
 }
 
-// The classes are final: calls of their members are inlined.
 void energies_of(const PairLaw& law, std::span<const double> r, std::span<double> energy) {
+  // A class that is final has its members inlined.
   const auto each = [&](const auto& of) {
     for (size_t k = 0; k < r.size(); ++k) energy[k] = of.energy(r[k]);
   };
   if (const auto* cubic = dynamic_cast<const HermiteLaw*>(&law))
-    each(*cubic);
+    energies_of(cubic->energies(), cubic->ends(), r, energy);
   else if (const auto* lj = dynamic_cast<const LennardJones*>(&law))
-    each(*lj);
+    energies_of(lj->energies(), lj->ends(), r, energy);
   else if (const auto* arcs = dynamic_cast<const BSplineLaw*>(&law))
     each(*arcs);
   else

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/base/parallel.h"
+#include "model/real/near_walk.h"
 
 namespace cuboct {
 namespace {
@@ -66,61 +67,38 @@ void NearList::build(std::span<const Vec3> x) {
   cells.build(x);
   order_.assign(cells.order().begin(), cells.order().end());
   groups_ = (order_.size() + lanes_ - 1) / lanes_;
-  std::vector<Vec3> sorted(order_.size());
-  for (size_t s = 0; s < order_.size(); ++s) sorted[s] = x[order_[s]];
+  const NearWalk walk(cells, {x.begin(), x.end()}, periodic_);
   const size_t count = static_cast<size_t>(threads_);
   parts_.resize(count);
   for_each_part(count, threads_, [&](size_t p, int) {
     parts_[p].first_group = groups_ * p / count;
-    fill(cells, sorted, order_, parts_[p], groups_ * (p + 1) / count);
+    fill(walk, parts_[p], groups_ * (p + 1) / count);
   });
 }
 
-void NearList::fill(const CellList& cells, const std::vector<Vec3>& x, const std::vector<uint32_t>& ids,
-                    PairRows& part, size_t end_group) const {
+void NearList::fill(const NearWalk& walk, PairRows& part, size_t end_group) const {
   const double range = cutoff_ + skin_ + margin_;
-  const double range2 = range * range;
   part.begin.assign(1, 0);
   part.entry.clear();
-  std::vector<uint64_t> candidates;  // id and slot, of one cell's surroundings
-  std::vector<double> near[3];       // their positions
-  std::vector<uint64_t> found;
-  std::vector<std::vector<uint64_t>> lists(lanes_);
-  int64_t cell = -1;
-  std::array<double, 3> box;
-  for (int axis = 0; axis < 3; ++axis) box[axis] = periodic_.extent[axis];
-  for (size_t g = part.first_group; g < end_group; ++g) {
+  std::vector<std::vector<uint32_t>> lists(lanes_);
+  const auto end_of_group = [&](size_t first_slot) {
     size_t longest = 0;
-    for (size_t lane = 0; lane < lanes_; ++lane) {
-      const size_t slot = g * lanes_ + lane;
-      lists[lane].clear();
-      if (slot >= x.size()) continue;
-      if (const int64_t at = cells.cell_at(x[slot]); at != cell) {
-        cell = at;
-        candidates.clear();
-        for (auto& axis : near) axis.clear();
-        cells.for_each_near(cell, [&](int64_t other) {
-          for (uint32_t b = cells.begin_of(other); b < cells.end_of(other); ++b) {
-            candidates.push_back(uint64_t{ids[b]} << 32 | b);
-            for (int axis = 0; axis < 3; ++axis) near[axis].push_back(x[b][axis]);
-          }
-        });
-        found.resize(candidates.size() + kNearerSpill);
-      }
-      const size_t n = nearer(near, candidates, x[slot], box, range2, found);
-      for (size_t k = 0; k < n; ++k) {
-        const auto other = static_cast<uint32_t>(found[k]);
-        if (other != slot) lists[lane].push_back(other);
-      }
-      longest = std::max(longest, lists[lane].size());
-    }
+    for (const auto& list : lists) longest = std::max(longest, list.size());
     for (size_t k = 0; k < longest; ++k)
       for (size_t lane = 0; lane < lanes_; ++lane) {
-        const uint32_t own = static_cast<uint32_t>(g * lanes_ + lane);
-        part.entry.push_back(4 * (k < lists[lane].size() ? static_cast<uint32_t>(lists[lane][k]) : own));
+        const uint32_t own = static_cast<uint32_t>(first_slot + lane);
+        part.entry.push_back(4 * (k < lists[lane].size() ? lists[lane][k] : own));
       }
     part.begin.push_back(part.begin.back() + longest);
-  }
+    for (auto& list : lists) list.clear();
+  };
+  const size_t begin = part.first_group * lanes_, end = std::min(order_.size(), end_group * lanes_);
+  walk(range, begin, end, [&](size_t slot, std::span<const uint64_t> near) {
+    const size_t lane = slot % lanes_;
+    for (const uint64_t one : near)
+      if (const auto other = static_cast<uint32_t>(one); other != slot) lists[lane].push_back(other);
+    if (lane + 1 == lanes_ || slot + 1 == end) end_of_group(slot - lane);
+  });
 }
 
 }  // namespace cuboct

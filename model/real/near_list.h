@@ -12,6 +12,8 @@
 
 namespace cuboct {
 
+class NearWalk;
+
 class NearList {
  public:
   // InputError as of CellList. `lanes` particles make a group. Rounding may bring pairs nearer by `margin`
@@ -35,8 +37,7 @@ class NearList {
   Vec3 difference(const Vec3& a, const Vec3& b) const { return nearest_.difference(a, b); }
 
  private:
-  void fill(const CellList& cells, const std::vector<Vec3>& x, const std::vector<uint32_t>& ids,
-            PairRows& part, size_t end_group) const;
+  void fill(const NearWalk& walk, PairRows& part, size_t end_group) const;
 
   double cutoff_, margin_;
   Periodic periodic_;

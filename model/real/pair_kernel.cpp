@@ -3,6 +3,7 @@
 #include "model/real/pair_kernel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <type_traits>
 
@@ -331,34 +332,43 @@ void forces64(const PairForce<double>& force, const PairRows& rows, const double
 void forces32(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v, float* f) {
   forces_of(force, rows, x, v, f);
 }
-size_t nearer_ones(const double* const at[3], const uint64_t* names, size_t count, const double* home,
-                   const double* box, double range2, uint64_t* found) {
+void over_r_of(const LawTerms<double>& law, const double* r2, size_t count, double* out) {
+  const hn::ScalableTag<double> d;
+  const auto core2 = hn::Set(d, law.core2), cutoff2 = hn::Set(d, law.cutoff2);
+  double rest[HWY_MAX_BYTES / sizeof(double)];
+  for (size_t k = 0; k < count; k += hn::Lanes(d)) {
+    const size_t here = std::min(count - k, hn::Lanes(d));
+    std::fill_n(rest, hn::Lanes(d), law.core2);
+    std::copy_n(r2 + k, here, rest);
+    const auto at = hn::LoadU(d, rest);
+    const auto value = Several<double>::of_one(law, hn::Max(at, core2));
+    hn::StoreU(hn::IfThenElseZero(hn::Lt(at, cutoff2), value), d, rest);
+    std::copy_n(rest, here, out + k);
+  }
+}
+size_t nearer_ones(const double* const at[3], const uint64_t* names, std::span<const NearRange> ranges,
+                   const double* home, const double* box, double range2, uint64_t* found) {
   const hn::ScalableTag<double> d;
   const hn::ScalableTag<uint64_t> u;
   const size_t lanes = hn::Lanes(d);
   const bool ring = box[0] > 0 || box[1] > 0 || box[2] > 0;
-  size_t n = 0, c = 0;
-  const auto distance2 = [&](auto load) HWY_ATTR {
-    auto r2 = hn::Zero(d);
-    for (int axis = 0; axis < 3; ++axis) {
-      auto of = hn::Sub(load(axis), hn::Set(d, home[axis]));
-      if (ring && box[axis] > 0)
-        of = hn::Sub(of, hn::Mul(hn::Set(d, box[axis]), hn::Round(hn::Mul(of, hn::Set(d, 1 / box[axis])))));
-      r2 = hn::Add(r2, hn::Mul(of, of));
+  size_t n = 0;
+  for (const NearRange& range : ranges)
+    for (size_t c = range.begin; c < range.end; c += lanes) {
+      auto r2 = hn::Zero(d);
+      for (int axis = 0; axis < 3; ++axis) {
+        auto of = hn::Sub(hn::LoadU(d, at[axis] + c), hn::Set(d, home[axis]));
+        if (ring && box[axis] > 0)
+          of = hn::Sub(of, hn::Mul(hn::Set(d, box[axis]), hn::Round(hn::Mul(of, hn::Set(d, 1 / box[axis])))));
+        r2 = hn::Add(r2, hn::Mul(of, of));
+      }
+      // Few of them are near: one by one costs less than a compressed store.
+      uint8_t bits[8] = {};
+      hn::StoreMaskBits(d, hn::Lt(r2, hn::Set(d, range2)), bits);
+      uint32_t near = bits[0];
+      if (c + lanes > range.end) near &= (1u << (range.end - c)) - 1;
+      for (; near != 0; near &= near - 1) found[n++] = names[c + static_cast<size_t>(std::countr_zero(near))];
     }
-    return r2;
-  };
-  for (; c + lanes <= count; c += lanes) {
-    const auto r2 = distance2([&](int axis) HWY_ATTR { return hn::LoadU(d, at[axis] + c); });
-    const auto near = hn::RebindMask(u, hn::Lt(r2, hn::Set(d, range2)));
-    n += hn::CompressStore(hn::LoadU(u, names + c), near, u, found + n);
-  }
-  for (; c < count; ++c) {
-    double one[HWY_MAX_BYTES / sizeof(double)];
-    hn::StoreU(distance2([&](int axis) HWY_ATTR { return hn::Set(d, at[axis][c]); }), d, one);
-    found[n] = names[c];
-    n += one[0] < range2 ? 1 : 0;
-  }
   // Each goes where as many stand before it as are less: for few, without a branch that depends on them.
   constexpr size_t kFew = 64;
   if (n > kFew) {
@@ -388,6 +398,7 @@ namespace cuboct {
 
 HWY_EXPORT(forces64);
 HWY_EXPORT(forces32);
+HWY_EXPORT(over_r_of);
 HWY_EXPORT(nearer_ones);
 HWY_EXPORT(lanes64);
 HWY_EXPORT(lanes32);
@@ -401,10 +412,15 @@ void pair_forces(const PairForce<float>& force, const PairRows& rows, const floa
                  float* f) {
   HWY_DYNAMIC_DISPATCH(forces32)(force, rows, x, v, f);
 }
-size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names, const Vec3& home,
-              const std::array<double, 3>& box, double range2, std::vector<uint64_t>& found) {
+void pair_over_r(const LawTerms<double>& law, const std::vector<double>& r2, std::vector<double>& over_r) {
+  over_r.resize(r2.size());
+  HWY_DYNAMIC_DISPATCH(over_r_of)(law, r2.data(), r2.size(), over_r.data());
+}
+size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names,
+              std::span<const NearRange> ranges, const Vec3& home, const std::array<double, 3>& box,
+              double range2, std::vector<uint64_t>& found) {
   const double* const axes[3] = {at[0].data(), at[1].data(), at[2].data()};
-  return HWY_DYNAMIC_DISPATCH(nearer_ones)(axes, names.data(), names.size(), home.data(), box.data(), range2,
+  return HWY_DYNAMIC_DISPATCH(nearer_ones)(axes, names.data(), ranges, home.data(), box.data(), range2,
                                            found.data());
 }
 template <>

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "model/contract/rule.h"
@@ -63,12 +64,18 @@ void pair_forces(const PairForce<double>& force, const PairRows& rows, const dou
                  double* f);
 void pair_forces(const PairForce<float>& force, const PairRows& rows, const float* x, const float* v,
                  float* f);
-// Of candidates at `at` (axis, candidate) those whose nearest image in `box` (0: an open axis) is nearer to
-// `home` than the root of range2 (m^2): their `names`, ascending, begin `found`, which has kNearerSpill more
-// places than candidates. Answers how many.
+// Of the candidates of `ranges`, at `at` (axis, candidate), those whose nearest image in `box` (0: an open
+// axis) is nearer to `home` than the root of range2 (m^2): their `names`, ascending, begin `found`. Answers
+// how many. `at` has kNearerSpill more places than names, and `found` than candidates.
 inline constexpr size_t kNearerSpill = 64;
-size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names, const Vec3& home,
-              const std::array<double, 3>& box, double range2, std::vector<uint64_t>& found);
+struct NearRange {
+  size_t begin, end;
+};
+size_t nearer(const std::vector<double> (&at)[3], const std::vector<uint64_t>& names,
+              std::span<const NearRange> ranges, const Vec3& home, const std::array<double, 3>& box,
+              double range2, std::vector<uint64_t>& found);
+// f/r of a law, N/m, at the roots of r2 (m^2).
+void pair_over_r(const LawTerms<double>& law, const std::vector<double>& r2, std::vector<double>& over_r);
 // Lanes of a vector on this machine.
 template <class Real>
 size_t pair_lanes();

@@ -8,6 +8,8 @@
 
 #include "model/base/error.h"
 #include "model/base/parallel.h"
+#include "model/contract/law_energies.h"
+#include "model/real/pair_kernel.h"
 #include "model/real/real_engine.h"
 
 namespace cuboct {
@@ -67,37 +69,79 @@ double Reference::largest_speed() const { return engine_->largest_speed(); }
 uint64_t Reference::lists_made() const { return engine_->lists_made(); }
 const char* Reference::simd() { return pair_simd(); }
 
-template <class On>
-void Reference::for_each_neighbour(On&& on) const {
-  const NearList& list = engine_->list();
-  const std::vector<Vec3>& x = body().x;
+namespace {
+
+// Pairs that are gathered, so that one call of a law serves many; those of a particle i follow one another,
+// by ascending j.
+struct PairBatch {
+  static constexpr size_t kMost = 1024;
+  std::vector<uint32_t> i, j;
+  std::vector<Vec3> d;         // x[j] - x[i], m
+  std::vector<double> r2;      // m^2
+  std::vector<double> values;  // what a law says of them
+};
+
+// Calls see(batch) for the pairs inside the cutoff: each once for each of its two particles, or with `once`
+// for the one of less id; all of one particle in one thread.
+template <class See>
+void for_each_batch(const NearList& list, const std::vector<Vec3>& x, double cutoff, bool once, int threads,
+                    const See& see) {
   const std::span<const uint32_t> ids = list.order();
   const std::vector<PairRows>& parts = list.parts();
   const size_t groups = parts.back().first_group + parts.back().begin.size() - 1;
   const size_t lanes = groups == 0 ? 1 : list.slots() / groups;
-  const double cutoff2 = rule_.cutoff() * rule_.cutoff();
-  for_each_part(parts.size(), threads_, [&](size_t p, int) {
+  const double cutoff2 = cutoff * cutoff;
+  for_each_part(parts.size(), threads, [&](size_t p, int) {
     const PairRows& part = parts[p];
+    PairBatch batch;
+    const auto hand_on = [&] {
+      see(batch);
+      batch.i.clear(), batch.j.clear(), batch.d.clear(), batch.r2.clear();
+    };
     for (size_t g = 0; g + 1 < part.begin.size(); ++g) {
       for (size_t lane = 0; lane < lanes; ++lane) {
         const size_t slot = (part.first_group + g) * lanes + lane;
         if (slot >= ids.size()) break;
+        const uint32_t i = ids[slot];
         for (size_t row = part.begin[g]; row < part.begin[g + 1]; ++row) {
-          const uint32_t i = ids[slot], j = ids[part.entry[row * lanes + lane] / 4];
+          const uint32_t j = ids[part.entry[row * lanes + lane] / 4];
+          if (once && j <= i) continue;
           const Vec3 d = list.difference(x[i], x[j]);
           const double r2 = d.squaredNorm();
-          if (r2 > 0 && r2 < cutoff2) on(i, j, d, r2);
+          if (!(r2 > 0 && r2 < cutoff2)) continue;
+          batch.i.push_back(i), batch.j.push_back(j), batch.d.push_back(d), batch.r2.push_back(r2);
         }
+        if (batch.i.size() >= PairBatch::kMost) hand_on();
       }
     }
+    hand_on();
   });
 }
 
+// Whether all pairs have the force of one law, as it is.
+bool one_law(const Rule& rule) {
+  const auto ones = [](const std::vector<double>& row) {
+    return std::ranges::all_of(row, [](double strength) { return strength == 1; });
+  };
+  return rule.laws() == 1 && rule.contact.empty() && std::ranges::all_of(rule.strength, ones);
+}
+
+}  // namespace
+
 double Reference::potential_energy() const {
   if (const RoundsTerms* terms = engine_->terms()) return terms->energy();
-  std::vector<double> of(body().size());
-  for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3&, double r2) {
-    if (i < j) of[i] += rule_.pair_energy(body_.type[i], body_.type[j], std::sqrt(r2));
+  const std::vector<Vec3>& x = body().x;
+  std::vector<double> of(x.size());
+  const bool alike = one_law(rule_);
+  for_each_batch(engine_->list(), x, rule_.cutoff(), true, threads_, [&](PairBatch& pairs) {
+    pairs.values.resize(pairs.r2.size());
+    for (double& r2 : pairs.r2) r2 = std::sqrt(r2);
+    if (alike)
+      energies_of(*rule_.law, pairs.r2, pairs.values);
+    else
+      for (size_t k = 0; k < pairs.i.size(); ++k)
+        pairs.values[k] = rule_.pair_energy(body_.type[pairs.i[k]], body_.type[pairs.j[k]], pairs.r2[k]);
+    for (size_t k = 0; k < pairs.i.size(); ++k) of[pairs.i[k]] += pairs.values[k];
   });
   return std::accumulate(of.begin(), of.end(), 0.0);
 }
@@ -121,16 +165,27 @@ std::vector<Mat3> Reference::virial_stress(double volume) const {
     for (size_t i = 0; i < stress.size(); ++i) stress[i] = terms->stress(i, volume);
     return stress;
   }
-  const bool damps = rule_.damping.coefficient > 0;
-  for_each_neighbour([&](uint32_t i, uint32_t j, const Vec3& d, double r2) {
-    const double r = std::sqrt(r2);
-    if (r >= rule_.reach(body_.type[i], body_.type[j])) return;
-    double k = rule_.law_of(body_.type[i], body_.type[j]).force(r) / r;
-    if (damps) k -= rule_.damping_over_r2(r) * (body_.v[j] - body_.v[i]).dot(d);
-    k *= rule_.strength_of(body_.type[i], body_.type[j]);
-    // A pair that pulls (k < 0) is under tension along d.
-    stress[i] += -k / (2 * volume) * d * d.transpose();
+  const bool damps = rule_.damping.coefficient > 0, alike = one_law(rule_);
+  const LawTerms<double> law(rule_.law_at(0));
+  const std::vector<Vec3>& x = body().x;
+  for_each_batch(engine_->list(), x, rule_.cutoff(), false, threads_, [&](PairBatch& pairs) {
+    if (alike) pair_over_r(law, pairs.r2, pairs.values);
+    for (size_t n = 0; n < pairs.i.size(); ++n) {
+      const uint32_t i = pairs.i[n], j = pairs.j[n];
+      const Vec3& d = pairs.d[n];
+      const double r = alike && !damps ? 0 : std::sqrt(pairs.r2[n]);
+      double k = alike ? pairs.values[n] : 0;
+      if (!alike) {
+        if (r >= rule_.reach(body_.type[i], body_.type[j])) continue;
+        k = rule_.law_of(body_.type[i], body_.type[j]).force(r) / r;
+      }
+      if (damps) k -= rule_.damping_over_r2(r) * (body_.v[j] - body_.v[i]).dot(d);
+      k *= rule_.strength_of(body_.type[i], body_.type[j]);
+      // A pair that pulls (k < 0) is under tension along d.
+      stress[i] -= k * d * d.transpose();
+    }
   });
+  for (Mat3& of : stress) of /= 2 * volume;
   return stress;
 }
 
