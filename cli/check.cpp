@@ -20,8 +20,10 @@
 #include "model/analysis/synopsis.h"
 #include "model/base/quantity_text.h"
 #include "model/base/resources.h"
+#include "model/real/reference.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
+#include "model/scene/readings.h"
 
 namespace cuboct {
 namespace {
@@ -199,6 +201,27 @@ std::string work_text(const Estimate& cost) {
                      time.empty() ? "" : ", of ", time);
 }
 
+// Their share is of the processors' time: the steps' is that of all threads.
+std::string readings_text(const Scene& scene, const Estimate& cost) {
+  const uint64_t every = scene.probe_every;
+  const double steps = (cost.seconds - cost.reading) * cost.threads;
+  std::string text = fmt::format("one every {} step{}, about {:.0f} % of the processor time", every,
+                                 every == 1 ? "" : "s", 100 * cost.reading / (cost.reading + steps));
+  if (every > scene.steps / kMostReadings && every == usual_probe_every(scene.steps))
+    text += ": closer ones would cost more";
+  return text;
+}
+
+// What the bonds of a state to go on from are, of which a run would refuse others.
+void check_bonds(const Scene& scene) {
+  if (!scene.body.bonds || scene.body.bonds->kept.empty()) return;
+  try {
+    const Reference bound(scene.rule, scene.body, scene.periodic, RealOptions{.threads = usable_cores()});
+  } catch (const InputError& error) {
+    throw scene.places.placed(error);
+  }
+}
+
 // What the scene is, and what a run of it does and takes.
 Items physics(const Loaded& loaded) {
   const Scene& scene = loaded.scene;
@@ -211,6 +234,7 @@ Items physics(const Loaded& loaded) {
   const Estimate cost = estimate(scene, plan, run_size(scene));
   add_rounds(items, scene);
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
+  if (cost.reading > 0) items.add("probes", readings_text(scene, cost));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
   const bool real = !has_machine(plan);
@@ -264,6 +288,7 @@ void add_check(Command& app, int&) {
   command.callback([options] {
     const Items stages = stages_in(options->input);
     const Loaded loaded = options->machine ? load(options->input) : load_any(options->input, "");
+    check_bonds(loaded.scene);
     Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);
     options->answer.close(items);

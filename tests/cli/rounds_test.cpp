@@ -81,6 +81,14 @@ TEST_F(RoundsTest, StagesKeepWhatBroke) {
   const nlohmann::json error = nlohmann::json::parse(other.err)["error"];
   EXPECT_TRUE(error["message"].get<std::string>().starts_with("the state was left by other bonds")) << error;
   EXPECT_EQ(error["line"], 4);
+  // `check` refuses what a run would.
+  const auto checked = [&](const std::string& text) {
+    return bench_.cuboct({"check", scene(text), "--from", out + "/1-open", "--json"});
+  };
+  EXPECT_EQ(checked(scene_with(kGlass + kBreaks)).code, 0);
+  const Answer refused = checked(scene_with(kGlass + "fracture_energy = \"4 J/m^2\"\n"));
+  EXPECT_EQ(refused.code, 2) << refused.out;
+  EXPECT_EQ(refused.err, other.err);
 }
 
 TEST_F(RoundsTest, WrongInputHasItsPlace) {
