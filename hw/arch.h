@@ -8,9 +8,9 @@
 #include "hw/boards.h"
 #include "hw/carry.h"
 #include "hw/link_code.h"
+#include "model/base/places.h"
 #include "model/base/vec.h"
 #include "model/contract/fixed_rule.h"
-#include "model/contract/places.h"
 #include "model/contract/quantise.h"
 
 namespace cuboct {

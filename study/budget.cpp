@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "model/base/error.h"
-#include "model/contract/places.h"
+#include "model/base/places.h"
 #include "model/scene/config.h"
 #include "study/cost.h"
 #include "study/measure_errors.h"

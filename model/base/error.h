@@ -28,7 +28,7 @@ class InputError : public std::runtime_error {
   InputError with(const std::string& hint) const;
 
   // The same error about these keys of a file, the likeliest first: "run.dt", "constraint[grip].velocity".
-  // Whoever knows where they stand gives it a place (model/contract/places.h).
+  // Whoever knows where they stand gives it a place (model/base/places.h).
   InputError about(std::vector<std::string> keys) const;
   const std::vector<std::string>& keys() const { return keys_; }
 

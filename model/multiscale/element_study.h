@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "model/base/places.h"
 #include "model/bond_order/tersoff_terms.h"
 #include "model/multiscale/element_body.h"
 #include "model/multiscale/shell_springs.h"
 #include "model/multiscale/wave.h"
-#include "model/scene/config.h"
 
 namespace cuboct {
 

@@ -98,11 +98,6 @@ class Reference {
   static const char* simd();
 
  private:
-  // Calls on(i, j, d, r2) for each particle i and each other j inside the cutoff, d = x[j] - x[i]; all of one
-  // i in one thread, by ascending j.
-  template <class On>
-  void for_each_neighbour(On&& on) const;
-
   Rule rule_;
   int threads_;
   uint64_t step_ = 0;

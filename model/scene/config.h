@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "model/base/places.h"
 #include "model/base/vec.h"
-#include "model/contract/places.h"
 #include "model/scene/units.h"
 
 namespace cuboct {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "model/contract/places.h"
+#include "model/base/places.h"
 #include "model/contract/rule.h"
 #include "model/scene/mesh.h"
 

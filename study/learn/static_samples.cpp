@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "model/base/error.h"
+#include "model/base/places.h"
 #include "model/bond_order/atom_motion.h"
-#include "model/contract/places.h"
 #include "model/scene/config.h"
 #include "study/learn/samples.h"
 

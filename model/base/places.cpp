@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/contract/places.h"
+#include "model/base/places.h"
 
 #include "model/base/error_parts.h"
 
