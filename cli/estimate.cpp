@@ -82,11 +82,13 @@ EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
   return cost;
 }
 
-// Of one reading, s: energies of all particles and pairs in doubles, and the watch's look at them. Measured
-// as CPU time of runs with readings less that without, over that of a step, on two cores of an EPYC that
-// others used too: 2 to 3 steps in the template `tension`, 1 to 4 in `metal`, 4 in `sheet`. In `gas`, whose
-// list of pairs is made anew for each reading, it was six. Engines that do not hand on the sums of their
-// pairs take a step's time for those.
+// Of one reading, s: energies of all particles and pairs in doubles, and the watch's look at them. CPU time
+// of runs with readings less that of runs without, the least of two to four, over that of a step, on two
+// cores of an EPYC under the load of others: 2 to 3.5 steps in the template `tension`, 1 to 4 in `metal`, 4.5
+// in `sheet`, 6 to 7 in `gas`, whose list of pairs is made anew for each reading. The constants are no times
+// of their own: with the step's rate of the lattice engine they give the least of these for tension and metal
+// (2 and 1), and too little for sheet and gas. Engines that do not hand on the sums of their pairs take a
+// step's time for those.
 double reading_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
   constexpr double kParticle = 70e-9, kPair = 3.5e-9;
   const double sums = engine.here == Here::lattice ? 0 : cost_of(engine, scene).neighbour_time * neighbours;

@@ -7,9 +7,9 @@
 
 namespace cuboct {
 
-// Steps from one reading to the next. 500 readings draw any curve. One costs as much as some two to four
-// steps (cli/estimate.cpp has what was measured), so those of a short run stand 20 steps apart: a tenth to a
-// fifth of its time. 64 it has in any case.
+// Steps from one reading to the next. 500 readings draw any curve. One costs as much as one to seven steps
+// (cli/estimate.cpp has what was measured), so those of a short run stand 20 steps apart. They take up to a
+// fifth of its time, a quarter in a gas. 64 it has in any case.
 inline constexpr uint64_t kMostReadings = 500;
 inline uint64_t usual_probe_every(uint64_t steps) {
   constexpr uint64_t kApart = 20, kFewest = 64;
