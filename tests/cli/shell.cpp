@@ -39,6 +39,8 @@ Bench::Bench(bool fake_engines) {
   fs::create_directory(directory_ / "bin");
   fs::copy(CUBOCT_PROGRAM, directory_ / "bin/cuboct");
   const fs::path evolution = fs::path(CUBOCT_PROGRAM).parent_path() / "cuboct-evolution.so";
+  fs::create_symlink(fs::path(CUBOCT_PROGRAM).parent_path() / "cuboct-read-trace",
+                     directory_ / "bin/cuboct-read-trace");
   if (fs::exists(evolution)) fs::create_symlink(evolution, directory_ / "bin/cuboct-evolution.so");
   if (fake_engines)
     for (const char* engine : {"cuboct-systemc", "cuboct-rtl"})
