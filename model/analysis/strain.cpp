@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/strain.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "model/base/dense.h"
 #include "model/base/parallel.h"
 #include "model/contract/neighbours.h"
 
@@ -47,12 +47,11 @@ Mat3 StrainMeter::gradient(size_t i, const std::vector<Vec3>& present) const {
     moved += (after - before) * before.transpose();
     shape += before * before.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(shape);
+  const auto [values, vectors] = eigensystem(shape);
   Vec3 inverse = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
-    if (axes.eigenvalues()[k] > 1e-6 * axes.eigenvalues()[2]) inverse[k] = 1 / axes.eigenvalues()[k];
-  return Mat3::Identity() +
-         moved * axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
+    if (values[k] > 1e-6 * values[2]) inverse[k] = 1 / values[k];
+  return Mat3::Identity() + moved * vectors * inverse.asDiagonal() * vectors.transpose();
 }
 
 std::vector<LocalStrain> StrainMeter::measure(const std::vector<Vec3>& present) const {

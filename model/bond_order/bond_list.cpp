@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+
+#include "model/base/dense.h"
 
 namespace cuboct {
 namespace {
@@ -17,9 +18,7 @@ constexpr size_t kMostPlaces = size_t{1} << 29;
 
 // By how much a deformation of space shortens the vector that it shortens most.
 double least_stretch(const Mat3& deformation) {
-  const Eigen::SelfAdjointEigenSolver<Mat3> square(deformation.transpose() * deformation,
-                                                   Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, square.eigenvalues()[0]));
+  return std::sqrt(std::max(0.0, eigenvalues<Mat3>(deformation.transpose() * deformation)[0]));
 }
 
 }  // namespace

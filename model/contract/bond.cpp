@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "model/contract/bond.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "model/base/dense.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
@@ -29,7 +29,7 @@ double largest_site_stiffness(const Rule& rule, const Body& body, const Periodic
   for (size_t i = 0; i < body.size(); ++i) {
     const ParticleType& type = rule.types[body.type[i]];
     const Mat3 own = 2 * site[i] + (type.pd ? type.kp : 0.0) * Mat3::Identity();
-    most = std::max(most, Eigen::SelfAdjointEigenSolver<Mat3>(own, Eigen::EigenvaluesOnly).eigenvalues()[2]);
+    most = std::max(most, eigenvalues(own)[2]);
   }
   return most;
 }

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <utility>
 
+#include "model/base/dense.h"
 #include "model/base/error.h"
 #include "model/solid/moduli.h"
 
@@ -72,9 +72,7 @@ Eigen::VectorXd eigenvalues_of(AtomicForces& forces, const AtomicLattice& lattic
       hessian(i, k) =
           (minus[static_cast<size_t>(i / 3)][i % 3] - plus[static_cast<size_t>(i / 3)][i % 3]) / (2 * kMove);
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>((hessian + hessian.transpose()) / 2,
-                                                        Eigen::EigenvaluesOnly)
-      .eigenvalues();
+  return eigenvalues<Eigen::MatrixXd>((hessian + hessian.transpose()) / 2);
 }
 
 Mat3 voigt_strain(int v, double size) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "model/rules/lps_lattice.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "model/base/dense.h"
 #include "model/rules/lps_terms.h"
 
 namespace cuboct {
@@ -48,13 +48,11 @@ double largest_lps_rate(const LpsMaterial& m, const std::vector<Vec3>& full, int
   // Waves beyond 2 pi over half the shortest bond repeat others, on the lattices at hand.
   const double end = 2 * std::numbers::pi / shortest;
   double most = 0;
-  Eigen::SelfAdjointEigenSolver<Mat3> solver;
   for (int a = 0; a <= along; ++a)  // D(-k) = D(k)
     for (int b = -along; b <= along; ++b)
       for (int c = -along; c <= along; ++c) {
         const Vec3 k = end / along * Vec3(a, b, m.dimensions == 3 ? c : 0);
-        solver.compute(wave_matrix(m, full, k), Eigen::EigenvaluesOnly);
-        most = std::max(most, solver.eigenvalues()[2]);
+        most = std::max(most, eigenvalues(wave_matrix(m, full, k))[2]);
         if (m.dimensions == 2) break;
       }
   return most;

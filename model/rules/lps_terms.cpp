@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <stdexcept>
 
+#include "model/base/dense.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/parallel.h"
@@ -222,7 +222,7 @@ class TermsOfBody final : public LpsTerms {
   }
 
   void check_span(size_t i, const Mat3& second) const {
-    const Vec3 values = Eigen::SelfAdjointEigenSolver<Mat3>(second).eigenvalues();
+    const Vec3 values = eigensystem(second).values;
     const uint64_t count = bonds_.end(i) - bonds_.begin(i);
     // Of a sheet one of the three is 0, out of its plane.
     const bool unstable = values[0] < -1e-9 * std::abs(values[2]);

@@ -38,12 +38,8 @@ std::vector<Bond> half_bonds(const PairLaw& law, double pitch) {
   return bonds;
 }
 
-Vec3 eigenvalues(const Mat3& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Mat3>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-// m D(q) = sum over all neighbours of constants * (1 - cos q.d); opposite ones contribute the same.
-Vec3 eigenvalues(const std::vector<Bond>& bonds, const Vec3& q) {
+// Of m D(q) = sum over all neighbours of constants * (1 - cos q.d); opposite ones contribute the same.
+Vec3 wave_stiffness(const std::vector<Bond>& bonds, const Vec3& q) {
   Mat3 sum = Mat3::Zero();
   for (const Bond& bond : bonds) sum += 2 * (1 - std::cos(q.dot(bond.d))) * bond.constants;
   return eigenvalues(sum);
@@ -143,7 +139,7 @@ double fcc_pressure(const PairLaw& law, double pitch) {
 }
 
 Vec3 squared_frequencies(const PairLaw& law, double mass, double pitch, const Vec3& q) {
-  return eigenvalues(half_bonds(law, pitch), q) / mass;
+  return wave_stiffness(half_bonds(law, pitch), q) / mass;
 }
 
 double largest_frequency(const PairLaw& law, double mass, double pitch, double tolerance) {
@@ -155,7 +151,7 @@ double largest_frequency(const PairLaw& law, double mass, double pitch, double t
   };
   std::vector<Candidate> best;
   for (const Vec3& at : best_of_grid(bonds, reciprocal))
-    best.push_back({eigenvalues(bonds, reciprocal * at)[2], at});
+    best.push_back({wave_stiffness(bonds, reciprocal * at)[2], at});
   std::ranges::stable_sort(best, std::greater(), &Candidate::value);
   best.resize(std::min(best.size(), kKept));
   // Compass search: the largest eigenvalue is continuous, but kinks where branches cross. Off the top by s
@@ -171,7 +167,7 @@ double largest_frequency(const PairLaw& law, double mass, double pitch, double t
           for (const double sign : {-1.0, 1.0}) {
             Vec3 at = c.at;
             at[axis] += sign * step;
-            const double value = eigenvalues(bonds, reciprocal * at)[2];
+            const double value = wave_stiffness(bonds, reciprocal * at)[2];
             // Above rounding, or the search could wander on a flat top.
             if (value > c.value * (1 + tolerance)) {
               c = {value, at};

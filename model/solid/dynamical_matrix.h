@@ -4,15 +4,13 @@
 // sqrt(2) * pitch. M. Born and K. Huang, Dynamical Theory of Crystal Lattices (1954), sections 24 and 29.
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
+#include "model/base/dense.h"
 #include "model/contract/rule.h"
 
 namespace cuboct {
-
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // Voigt's order of pairs of axes: xx, yy, zz, yz, xz, xy.
 inline constexpr std::array<std::array<int, 2>, 6> kVoigt{{{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}}};

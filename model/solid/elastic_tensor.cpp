@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <cmath>
 #include <stdexcept>
+
+#include "model/base/dense.h"
 
 namespace cuboct {
 namespace {
@@ -21,13 +22,12 @@ constexpr Eigen::Index kDense = 450;  // degrees of freedom
 
 // The displacements against the couplings, K^-1 L, by the eigenvectors of K: those at 0 have no coupling.
 Couplings solve_dense(const Eigen::MatrixXd& k, const Couplings& couplings) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k);
-  const Eigen::VectorXd& values = solver.eigenvalues();
+  const auto [values, vectors] = eigensystem(k);
   const double zero = 1e-9 * values[values.size() - 1];
   if (values[0] < -zero) no_minimum(fmt::format("a stiffness of {:.4g} N/m", values[0]));
   Eigen::VectorXd inverse = values;
   for (double& value : inverse) value = value > zero ? 1 / value : 0;
-  return solver.eigenvectors() * inverse.asDiagonal() * (solver.eigenvectors().transpose() * couplings);
+  return vectors * inverse.asDiagonal() * (vectors.transpose() * couplings);
 }
 
 Couplings solve_sparse(const Eigen::SparseMatrix<double>& k, const Couplings& couplings) {

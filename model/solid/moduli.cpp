@@ -73,7 +73,7 @@ double softest_strain(const Matrix6& c) {
   Eigen::Matrix<double, 6, 1> scale;
   scale << 1, 1, 1, std::numbers::sqrt2, std::numbers::sqrt2, std::numbers::sqrt2;
   const Matrix6 kelvin = scale.asDiagonal() * ((c + c.transpose()) / 2) * scale.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(kelvin, Eigen::EigenvaluesOnly).eigenvalues()[0];
+  return eigenvalues(kelvin)[0];
 }
 
 Matrix6 in_axes(const Matrix6& c, const Mat3& axes) {
@@ -103,8 +103,7 @@ std::pair<double, double> poissons_ratio(const Matrix6& c, const Vec3& direction
     for (int b = 0; b < 3; ++b) e(a, b) = strain[voigt(a, b)] / (a == b ? 1 : 2);
   const Eigen::Matrix<double, 3, 2> sides = across(n);
   const Eigen::Matrix2d lateral = -sides.transpose() * e * sides / n.dot(e * n);
-  const Eigen::Vector2d ends =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(lateral, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector2d ends = eigenvalues(lateral);
   return {ends[0], ends[1]};
 }
 
@@ -116,14 +115,11 @@ Vec3 wave_speeds(const Matrix6& c, double density, const Vec3& direction) {
       for (int j = 0; j < 3; ++j)
         for (int l = 0; l < 3; ++l) christoffel(i, k) += c(voigt(i, j), voigt(k, l)) * n[j] * n[l] / density;
   const Mat3 symmetric = (christoffel + christoffel.transpose()) / 2;
-  return Eigen::SelfAdjointEigenSolver<Mat3>(symmetric, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .cwiseMax(0)
-      .cwiseSqrt();
+  return eigenvalues(symmetric).cwiseMax(0).cwiseSqrt();
 }
 
 std::pair<Vec3, Vec3> extreme_directions(const Matrix6& c) {
-  const Matrix6 compliance = c.inverse();
+  const Matrix6 compliance = inverse(c);
   const auto inverse_modulus = [&](const Vec3& n) {
     const auto along = square_of(n, 1);
     return along.dot(compliance * along);
@@ -143,7 +139,7 @@ Isotropic voigt_mean(const Matrix6& c) {
 }
 
 Isotropic reuss_mean(const Matrix6& c) {
-  const Matrix6 s = c.inverse();
+  const Matrix6 s = inverse(c);
   const double axial = s(0, 0) + s(1, 1) + s(2, 2), cross = s(0, 1) + s(1, 2) + s(0, 2);
   return {1 / (axial + 2 * cross), 15 / (4 * (axial - cross) + 3 * (s(3, 3) + s(4, 4) + s(5, 5)))};
 }

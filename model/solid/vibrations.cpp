@@ -3,13 +3,13 @@
 
 #include <Spectra/SymEigsSolver.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "model/base/dense.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
@@ -55,9 +55,9 @@ constexpr Eigen::Index kDense = 64;  // rows up to which a full decomposition is
 // The largest eigenvalue; `start` is where the iterations begin.
 Mode largest(const Combined& m, const Eigen::VectorXd& start, double tolerance) {
   if (m.rows() <= kDense) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(m.dense());
+    const auto [values, vectors] = eigensystem(m.dense());
     const Eigen::Index last = m.rows() - 1;
-    return {solver.eigenvalues()[last], solver.eigenvectors().col(last)};
+    return {values[last], vectors.col(last)};
   }
   constexpr Eigen::Index kKept = 40;  // Lanczos vectors
   Spectra::SymEigsSolver<Combined> solver(const_cast<Combined&>(m), 1, kKept);

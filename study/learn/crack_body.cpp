@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "study/learn/crack_body.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+
+#include "model/base/dense.h"
 
 namespace cuboct::learn {
 namespace {
@@ -46,9 +47,9 @@ CrackBody::CrackBody(const Grid& grid, const Kernel& kernel, const Breaking& bre
   terms_->recall(broken_across(*terms_, home_, cut));
   const Symbol::Parts parts = symbol.parts(symbol.kappa(K));
   for (size_t k = 0; k < symbol.waves(); ++k)
-    stiffest_ = std::max(stiffest_, Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(
-                                        Symbol::matrix(kernel.lambda, kernel.mu, parts, k))
-                                        .eigenvalues()[1]);
+    stiffest_ =
+        std::max(stiffest_,
+                 eigensystem<Eigen::Matrix2d>(Symbol::matrix(kernel.lambda, kernel.mu, parts, k)).values[1]);
 }
 
 const std::vector<Vec3>& CrackBody::force(const std::vector<Vec3>& u, bool keeps) {

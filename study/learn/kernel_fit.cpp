@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 #include <nlopt.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
 
+#include "model/base/dense.h"
 #include "model/base/error.h"
 
 namespace cuboct::learn {
@@ -96,16 +96,16 @@ std::vector<double> KernelProblem::constraints(const Symbol::Parts& parts, Slope
     const Eigen::Matrix2d& G = parts.G[k];
     const double square = symbol_.square(k);
     const auto factor = [&] { return (*slopes->factor)[out.size() - 1]; };
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> deviatoric(16 * G);
-    out.push_back(deviatoric.eigenvalues()[0] / square - input_.zeta);
+    const auto deviatoric = eigensystem<Eigen::Matrix2d>(16 * G);
+    out.push_back(deviatoric.values[0] / square - input_.zeta);
     if (slopes) {
-      const Eigen::Vector2d v = deviatoric.eigenvectors().col(0);
+      const Eigen::Vector2d v = deviatoric.vectors.col(0);
       slopes->parts->G[k] += factor() * 16 / square * v * v.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> rest(16 * G - 8 * s * s.transpose());
-    out.push_back(rest.eigenvalues()[0] / square);
+    const auto rest = eigensystem<Eigen::Matrix2d>(16 * G - 8 * s * s.transpose());
+    out.push_back(rest.values[0] / square);
     if (slopes) {
-      const Eigen::Vector2d v = rest.eigenvectors().col(0);
+      const Eigen::Vector2d v = rest.vectors.col(0);
       slopes->parts->G[k] += factor() * 16 / square * v * v.transpose();
       slopes->parts->s.col(column) -= factor() * 16 / square * v.dot(s) * v;
     }
