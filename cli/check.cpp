@@ -23,7 +23,6 @@
 #include "model/real/reference.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
-#include "model/scene/readings.h"
 
 namespace cuboct {
 namespace {
@@ -205,11 +204,8 @@ std::string work_text(const Estimate& cost) {
 std::string readings_text(const Scene& scene, const Estimate& cost) {
   const uint64_t every = scene.probe_every;
   const double steps = (cost.seconds - cost.reading) * cost.threads;
-  std::string text = fmt::format("one every {} step{}, about {:.0f} % of the processor time", every,
-                                 every == 1 ? "" : "s", 100 * cost.reading / (cost.reading + steps));
-  if (every > scene.steps / kMostReadings && every == usual_probe_every(scene.steps))
-    text += ": closer ones would cost more";
-  return text;
+  return fmt::format("one every {} step{}, about {:.0f} % of the processor time", every,
+                     every == 1 ? "" : "s", 100 * cost.reading / (cost.reading + steps));
 }
 
 // What the bonds of a state to go on from are, of which a run would refuse others.

@@ -12,7 +12,6 @@
 #include "model/contract/law.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/file_kind.h"
-#include "model/scene/readings.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
 #include "model/solid/vibrations.h"
@@ -190,10 +189,8 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     scene.loading = read_static(*stage, scene);
   else if (usual_static)
     scene.loading = read_static(run, scene);
-  // A load step takes hundreds of evaluations: beside it no reading counts.
-  const uint64_t as_usual =
-      scene.loading ? std::max(scene.loading->every, whole / kMostReadings) : usual_probe_every(whole);
-  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : as_usual);
+  const uint64_t least = scene.loading ? scene.loading->every : 1;
+  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));
   scene.frame_every = every("frame_every", 0);
   if (scene.loading) {
     scene.probe_every = scene.loading->whole(scene.probe_every);

@@ -21,7 +21,7 @@ constexpr double kElasticStrain = 0.005;
 // A stress at strain 0, over the strength, that counts as none.
 constexpr double kAtRest = 0.01;
 // Beyond every matter.
-constexpr double kMostStress = 1e15, kMostStrain = 100;
+constexpr double kMostStress = 1e18, kMostStrain = 100;
 
 // Who tells an error of point k, at its place.
 using Fail = std::function<void(size_t k, const std::string& message, const std::string& hint)>;

@@ -49,9 +49,6 @@ TEST(New, WritesScenesThatRun) {
     const Answer checked = bench.cuboct({"check", path});
     EXPECT_EQ(checked.code, 0) << checked.err;
     EXPECT_EQ(checked.out.find("warning"), std::string::npos) << checked.out;
-    // Of a run's time readings take no more than a fifth, as `check` reckons it.
-    const size_t share = checked.out.find(", about ", checked.out.find("\nprobes ")) + 8;
-    EXPECT_LE(std::stod(checked.out.substr(share)), 20) << checked.out;
     std::vector<std::string> run{"run", path, "--steps", "40"};
     if (name == "release") run.insert(run.end(), {"--stage", "relax", "--out", bench.path("stages")});
     const Answer ran = bench.cuboct(run);

@@ -77,8 +77,8 @@ TEST_F(Target, RefusesWhatIsNoCurve) {
       "t.csv:4:1: strains must ascend, but 0.1 follows 0.1\n  hint: a curve that goes back is no function of "
       "strain: leave the unloading out");
   EXPECT_EQ(of_csv(head + "0,0\n0.1,nan\n0.2,3\n"), "t.csv:3:5: 'nan' is no finite number");
-  EXPECT_EQ(of_csv(head + "0,0\n0.1,1e10\n0.2,3\n"),
-            "t.csv:3:1: a stress of 1e+16 Pa at a strain of 0.1: at most 1e+15 Pa and 100 are taken\n"
+  EXPECT_EQ(of_csv(head + "0,0\n0.1,1e13\n0.2,3\n"),
+            "t.csv:3:1: a stress of 1e+19 Pa at a strain of 0.1: at most 1e+18 Pa and 100 are taken\n"
             "  hint: the right units of the columns");
   EXPECT_EQ(of_csv(head + "0,0\n0.1,\n0.2,3\n"), "t.csv:3:5: '' is no finite number");
   EXPECT_EQ(of_csv(head + "0,0\n0.1\n0.2,3\n"), "t.csv:3:1: 1 fields, but the header has 2");
