@@ -22,6 +22,7 @@ class Programs(unittest.TestCase):
         self.addCleanup(os.environ.pop, "LIE", None)
         for name in ("cuboct-systemc", "cuboct-rtl"):
             shutil.copy(sys.argv[3], os.path.join(self.folder.name, name))
+        os.symlink(os.path.join(os.path.abspath(sys.argv[2]), "cuboct-read-trace"), os.path.join(self.folder.name, "cuboct-read-trace"))
         cuboct.set_program_directory(self.folder.name)
         self.scene = cuboct.Scene.load(scene_file("lj_block.toml"))
         self.scene["title"] = "changed in Python"  # so the program reads what was made here
