@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "cli/command.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
+#include "model/base/input_file.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
@@ -57,7 +57,7 @@ void draw(const Options& options) {
   const Field field = field_of(options.field);
   const std::string out = options.out.empty() ? options.directory + "/picture.png" : options.out;
   const std::string path = options.directory + "/rasters.h5";
-  if (!std::filesystem::exists(path))
+  if (!is_file(path))
     throw InputError(fmt::format("{} holds no pictures: no file rasters.h5", options.directory),
                      "'cuboct run SCENE --out DIR' makes one");
   std::optional<DirectoryLock> lock;

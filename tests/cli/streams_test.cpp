@@ -179,9 +179,8 @@ TEST_F(StandardStreams, ATemporaryDirectoryThatIsNotThereIsNamed) {
 
 TEST_F(StandardStreams, ARefusalOfTheFileSystemIsOneOfInput) {
   const std::string name(300, 'a');
-  const std::string none = name + " holds no run: no file run.toml\n";
-  for (const auto& [command, told] : {std::pair{"$cuboct picture ", none},
-                                      {"$cuboct report ", none},
+  for (const auto& [command, told] : {std::pair{"$cuboct picture ", name + " holds no pictures: "},
+                                      {"$cuboct report ", name + " holds no run: "},
                                       {"$cuboct synth --target up5k ", ": File name too long\n"}}) {
     const Answer answer = sh(command + name);
     EXPECT_EQ(answer.code, 2);
