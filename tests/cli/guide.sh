@@ -13,6 +13,15 @@ ln -s "$root/scenes" "$work/scenes"
 cd "$work"
 PATH=$programs:$PATH
 
+# A page's sleep of seconds lets a program in the background begin: here until it catches SIGTERM, however busy the machine is.
+sleeps='sleep() {
+  local program=$(jobs -p | tail -n 1)
+  [ "${1%%.*}" -gt 0 ] || program=none
+  while [ -d "/proc/${program:-none}" ] && ! (( 0x$(sed -n "s/^SigCgt:[[:space:]]*//p" "/proc/$program/status") >> 14 & 1 )); do
+    command sleep 0.1
+  done
+  command sleep "$1"
+}'
 blocks=0 texts=0
 kind='' body=''
 while IFS= read -r line; do
@@ -23,7 +32,7 @@ while IFS= read -r line; do
     ':```'*) kind=other body='' ;;
     'sh:```')
       kind='' blocks=$((blocks + 1))
-      bash -euo pipefail -c "$body" >printed 2>&1 </dev/null || { echo "failed: $body"; cat printed; exit 1; } ;;
+      bash -euo pipefail -c "$sleeps"$'\n'"$body" >printed 2>&1 </dev/null || { echo "failed: $body"; cat printed; exit 1; } ;;
     'file:```')
       kind='' name=${body%%$'\n'*}
       printf %s "$body" >"${name#// }" ;;
