@@ -181,6 +181,8 @@ void Loop::resume() {
   if (leads()) {
     resume_trace(head);
     check_alike(head);
+    // What was kept before is taken anew from here on: a refusal above leaves all as it was.
+    journal_->for_each_frame([&](RunState state) { give(request_, std::move(state), trace_); });
   }
   trace_.steps_done = head.step;
   trace_.seconds = head.seconds;
@@ -203,7 +205,6 @@ void Loop::resume_trace(const CheckpointHead& head) {
       trace_.curves[k].name = fresh[k].name, trace_.curves[k].unit = fresh[k].unit;
     meter_.restore(head.probes, trace_.curves);
   }
-  journal_->for_each_frame([&](RunState state) { give(request_, std::move(state), trace_); });
 }
 
 // A state is made only where a frame or a sample asks for one.

@@ -11,6 +11,7 @@
 
 #include <fstream>
 #include <functional>
+#include <map>
 #include <regex>
 
 #include "model/base/directory_lock.h"
@@ -501,6 +502,30 @@ TEST_F(Ranks, OutliveNobody) {
       started.finish();
       EXPECT_TRUE(comes([&] { return processes(bench_).empty(); })) << signal << " " << ranks;
     }
+}
+
+// Fewer steps than the checkpoint has: the run that was cut keeps its trace, its frames and its summary.
+TEST_F(NothingLost, AResumeThatIsRefusedLeavesAllAsItWas) {
+  const Bench bench(false);
+  const std::string out = bench.path("run");
+  const auto files = [&] {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::directory_iterator(out))
+      all[entry.path().filename()] = contents(entry.path());
+    return all;
+  };
+  std::vector<std::string> run{
+      "run",        "scenes/lj_block.toml", "--quiet", "--out",   out,      "--checkpoint-every",
+      "1000 steps", "--frame-every",        "100000",  "--steps", "1000000"};
+  EXPECT_EQ(bench.cuboct(run, there(out + "/checkpoint")).code, 1);
+  const auto before = files();
+  EXPECT_EQ(before.count("trace.h5") + before.count("summary.json") + before.count("rasters.h5"), 3U);
+  run.back() = "50";
+  run.push_back("--resume");
+  const Answer refused = bench.cuboct(run);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find(" was made with more steps: it is at step "), std::string::npos) << refused.err;
+  EXPECT_TRUE(files() == before);
 }
 
 }  // namespace
