@@ -129,7 +129,7 @@ def began(case, ended, after, text):
         return False
     if case.command[0] == "elastic":  # the answer is that the matter is not stable
         return b"stable" in ended.out
-    return any(name.startswith("out/") for name in after) or bool(re.search(r"\bstep \d|runs?\b|at a (?:pitch|strain) of|interrupted|failed|differ", text))
+    return any(name.startswith("out/") for name in after) or bool(re.search(r"\bstep \d|runs?\b|at a (?:pitch|strain) of|no pitch of at most|interrupted|failed|differ", text))
 
 
 def judge(case, ended, before, after):
