@@ -357,6 +357,12 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   const int D = widths.difference_frac;
   const double ratio = std::min(1.0, cutoff / cell_edge);
   fixed.cutoff2 = static_cast<uint64_t>(std::llround(std::ldexp(ratio * ratio, 2 * D)));
+  if (fixed.cutoff2 == 0)
+    throw InputError(
+        fmt::format("a cutoff of {:.3g} m is less than a unit of a difference in cells of {:.3g} m", cutoff,
+                    cell_edge),
+        "a smaller cell_edge, or more bits of difference_frac")
+        .about({"node.cell_edge", "widths.difference_frac"});
   set_planar(fixed);
 
   double scale = 0;

@@ -254,7 +254,7 @@ LINES = [
     ["fit", "in/fit.toml", "--jobs", "1", "--out", "out", "--json"], ["pitch", "in/bar.toml", "--error", "20%", "--particles", "400", "--out", "out"],
     ["stability", "in/scene.toml", "--resolution", "0.2", "--strain", "0.01", "--axis", "x"],
     ["picture", "in/run", "--out", "out.png", "--field", "speed", "--steps", "0,24", "--limit", "1", "--width", "300"],
-    ["report", "in/run", "--out", "out.html"], ["new", "out", "--like", "gas"], ["new", "--list"], ["bench", "--list"], ["--version"],
+    ["report", "in/run", "--out", "out.html"], ["new", "out", "--like", "gas"], ["new", "--list"], ["--version"],
     ["synth", "in/run", "--target", "asic", "--unit", "node", "--seed", "1", "--freq", "12", "--activity", "0.1"],
     ["learn", "in/study.toml", "--out", "out"], ["multiscale", "in/study.toml", "--out", "out", "--clock", "1 GHz", "--fraction", "22"]]
 

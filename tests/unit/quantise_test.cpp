@@ -170,6 +170,9 @@ TEST(Quantise, RefusesWithNumbers) {
   Rule rule = bond_rule();
   EXPECT_EQ(text([&] { quantise(rule, 1.5, {}, {}); }),
             "the cutoff, 1.6 m, is longer than a cell edge, 1.5 m");
+  EXPECT_EQ(text([&] { quantise(rule, 1e6, {}, {}); }),
+            "a cutoff of 1.6 m is less than a unit of a difference in cells of 1e+06 m\n"
+            "  hint: a smaller cell_edge, or more bits of difference_frac");
   EXPECT_EQ(text([&] { quantise(rule, 1.6, {.velocity_bits = 40}, {}); }),
             "velocity_bits = 40 is out of range: 8 to 29");
   EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {.degree = 3}); }),
