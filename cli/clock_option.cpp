@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "model/base/error.h"
-#include "model/scene/units.h"
+#include "model/base/units.h"
 
 namespace cuboct {
 

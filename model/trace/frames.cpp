@@ -12,7 +12,7 @@
 
 #include "model/base/error.h"
 #include "model/base/text.h"
-#include "model/scene/units.h"
+#include "model/base/units.h"
 
 namespace cuboct {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hw/technology.h"
-#include "model/scene/units.h"
+#include "model/base/units.h"
 
 namespace cuboct::study {
 

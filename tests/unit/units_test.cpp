@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "model/base/spelling.h"
-#include "model/scene/units.h"
+#include "model/base/units.h"
 
 namespace cuboct {
 namespace {
