@@ -27,9 +27,9 @@ struct Template {
 
 const std::vector<Template>& templates() {
   static const std::vector<Template> all{
-      {"tension", kTensionScene}, {"impact", kImpactScene}, {"drop", kDropScene},
-      {"beam", kBeamScene},       {"gas", kGasScene},       {"metal", kMetalScene},
-      {"crack", kCrackScene},     {"sheet", kSheetScene},   {"release", kReleaseScene}};
+      {"tension", kTensionScene}, {"impact", kImpactScene}, {"drop", kDropScene},   {"beam", kBeamScene},
+      {"gas", kGasScene},         {"metal", kMetalScene},   {"crack", kCrackScene}, {"sheet", kSheetScene},
+      {"release", kReleaseScene}, {"rule", kRuleScene}};
   return all;
 }
 

@@ -15,6 +15,7 @@ extern const char kMetalScene[];
 extern const char kCrackScene[];
 extern const char kSheetScene[];
 extern const char kReleaseScene[];
+extern const char kRuleScene[];
 
 // By its name; InputError with the nearest spelling.
 const std::string& template_text(const std::string& name);

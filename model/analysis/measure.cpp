@@ -395,6 +395,11 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
       case Probe::Kind::temperature:
         curve("temperature", probe.unit);
         break;
+      case Probe::Kind::field:
+        if (probe.numbers == 1) curve(probe.field, probe.unit);
+        for (int k = 0; probe.numbers > 1 && k < probe.numbers; ++k)
+          curve(probe.field + "_" + "xyz"[k], probe.unit);
+        break;
     }
   }
 }
@@ -425,6 +430,13 @@ Vec3 flow_of(const std::vector<Vec3>& v, const Probe& probe) {
   Vec3 sum = Vec3::Zero();
   for (size_t k = 0; k < probe.set.ids.size(); ++k) sum += probe.relative[k] * v[probe.set.ids[k]];
   return sum / std::accumulate(probe.relative.begin(), probe.relative.end(), 0.0);
+}
+
+double mean_of_field(const std::vector<double>& values, const Probe& probe, int number) {
+  double sum = 0;
+  for (const uint32_t k : probe.set.ids)
+    sum += values[static_cast<size_t>(probe.numbers) * k + static_cast<size_t>(number)];
+  return sum / static_cast<double>(probe.set.ids.size());
 }
 
 // m/s, from the reading `window` readings ago, or the first one, to the last.
@@ -482,6 +494,9 @@ void ProbeMeter::add(const Sample& sample) {
         break;
       case Probe::Kind::temperature:
         point(probe.scale * squares(sample.v, probe, flow_of(sample.v, probe)));
+        break;
+      case Probe::Kind::field:
+        for (int k = 0; k < probe.numbers; ++k) point(mean_of_field(sample.fields[probe.field_at], probe, k));
         break;
     }
 }

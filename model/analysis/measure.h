@@ -81,9 +81,10 @@ double largest_speed(const FixedRule& rule, const State& state);
 // Particles at one time in real units; the index is the particle's id.
 struct Sample {
   uint64_t step = 0;
-  std::vector<Vec3> x;      // m; an axis with a period may be given in any image
-  std::vector<Vec3> force;  // N, of the pairs
-  std::vector<Vec3> v;      // m/s, at the time of the positions
+  std::vector<Vec3> x;                           // m; an axis with a period may be given in any image
+  std::vector<Vec3> force;                       // N, of the pairs
+  std::vector<Vec3> v;                           // m/s, at the time of the positions
+  std::vector<std::vector<double>> fields = {};  // as Reading::fields
 };
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,

@@ -27,7 +27,8 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
   if (options.probes)
     for (const Probe& probe : scene.probes) {
       forces_ |= probe.kind == Probe::Kind::force || probe.kind == Probe::Kind::stress_strain;
-      velocities_ |= probe.kind >= Probe::Kind::velocity;
+      velocities_ |= probe.kind >= Probe::Kind::velocity && probe.kind <= Probe::Kind::temperature;
+      fields_ |= probe.kind == Probe::Kind::field;
     }
   // What a run is watched for is of pair laws.
   const bool watch = options.watch && rounds_of(scene.rule) == nullptr;
@@ -35,12 +36,18 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
 }
 
 Asked Meter::asked(bool look) {
-  return {
-      ids_, forces_, velocities_, energy_.wanted(), energy_.volume(), look && watch_ ? &*watch_ : nullptr};
+  return {.ids = ids_,
+          .forces = forces_,
+          .velocities = velocities_,
+          .energies = energy_.wanted(),
+          .fields = fields_,
+          .volume = energy_.volume(),
+          .watch = look && watch_ ? &*watch_ : nullptr};
 }
 
 void Meter::add(const Reading& reading) {
-  if (!probes_.curves().empty()) probes_.add({reading.step, reading.x, reading.force, reading.v});
+  if (!probes_.curves().empty())
+    probes_.add({reading.step, reading.x, reading.force, reading.v, reading.fields});
   energy_.add(reading.step, reading.energies, reading.stress);
 }
 

@@ -57,7 +57,7 @@ class Meter {
   std::vector<uint32_t> ids_;  // particles in any probe's set, ascending: the probes' ids index this list
   ProbeMeter probes_;
   EnergyCurves energy_;
-  bool forces_ = false, velocities_ = false;  // some probe needs them
+  bool forces_ = false, velocities_ = false, fields_ = false;  // some probe needs them
   std::optional<Watch> watch_;
 };
 

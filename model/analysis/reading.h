@@ -17,6 +17,7 @@ struct Asked {
   bool forces = false;            // of those particles
   bool velocities = false;        // of those particles
   bool energies = false;
+  bool fields = false;     // of those particles, what the rule's declaration shows
   double volume = 0;       // m^3: with energies, the virial stress over it; 0: none
   Watch* watch = nullptr;  // to be shown the state; of use with energies alone
 };
@@ -26,6 +27,8 @@ struct Reading {
   // In the order of the ids: m; N of the pairs, zero where not asked for; m/s at the time of the positions,
   // empty where not asked for.
   std::vector<Vec3> x, force, v;
+  // [field of the rule][numbers of each particle, one after another]; empty where not asked for.
+  std::vector<std::vector<double>> fields;
   Energies energies;
   Mat3 stress = Mat3::Zero();  // Pa, tension positive, without its kinetic part
 };

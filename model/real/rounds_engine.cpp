@@ -29,7 +29,7 @@ class RoundsEngine final : public RealEngine {
         u_(body.u),
         type_(body.type),
         rounds_(*rounds_of(rule)),
-        terms_(rounds_.bind(as_packed(body), periodic, options.threads)) {
+        terms_(rounds_.bind(rule, as_packed(body), periodic, options.threads)) {
     recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
     evaluate(false);
@@ -79,14 +79,17 @@ class RoundsEngine final : public RealEngine {
  private:
   // The rounds, one after another: none begins before all particles have finished the one before it.
   void evaluate(bool keeps) const {
+    terms_->velocities(v_);
     terms_->begin(x_);
     const size_t parts = (x_.size() + kRows - 1) / kRows;
-    for (size_t round = 0; round < rounds_.declaration().rounds.size(); ++round)
+    for (size_t round = 0; round < rounds_.declaration().rounds.size(); ++round) {
       for_each_part(parts, options_.threads, [&](size_t part, int) {
         const size_t begin = part * kRows, end = std::min(begin + kRows, x_.size());
         terms_->pair(round, begin, end, keeps);
         terms_->finish(round, begin, end);
       });
+      terms_->end(round, keeps);
+    }
     fresh_ = true;
   }
   void refresh() const {
@@ -95,6 +98,7 @@ class RoundsEngine final : public RealEngine {
 
   // v += a * kick with imposed velocities; then u and x by v * drift.
   void move(double kick, double drift) {
+    if (!rounds_.declaration().moves) return;
     const std::vector<Vec3>& f = terms_->force();
     for (size_t i = 0; i < x_.size(); ++i) {
       const ParticleType& type = rule_.types[type_[i]];

@@ -55,7 +55,7 @@ std::string list(const std::vector<std::string>& names) {
 }  // namespace
 
 void check(const RuleDeclaration& rule) {
-  std::set<std::string> names{"position"};
+  std::set<std::string> names{"position", "velocity"};
   check_fields(rule, rule.particle, names);
   check_fields(rule, rule.bond, names);
   check_fields(rule, rule.constants, names);
@@ -64,7 +64,7 @@ void check(const RuleDeclaration& rule) {
   if (rule.rounds.empty()) refuse(rule, "it has no round");
   if (rule.bonds == BondRange::current && !(rule.bond.empty() && rule.constants.empty()))
     refuse(rule, "its bonds are those of the moment, and hold nothing");
-  std::set<std::string> known{"position"};
+  std::set<std::string> known{"position", "velocity"};
   for (const std::string& name : rule.ready) {
     if (!has(rule.particle, name)) refuse(rule, fmt::format("no particle holds '{}'", name));
     known.insert(name);
@@ -75,7 +75,7 @@ void check(const RuleDeclaration& rule) {
   }
   for (const RuleField& field : rule.particle)
     if (!known.count(field.name)) refuse(rule, fmt::format("no round makes '{}'", field.name));
-  if (std::ranges::count(rule.rounds.back().made, kForceField) != 1)
+  if (rule.moves && std::ranges::count(rule.rounds.back().made, kForceField) != 1)
     refuse(rule, "its last round makes no 'force'");
 }
 

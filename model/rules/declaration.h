@@ -41,12 +41,14 @@ enum class BondRange : unsigned char {
 struct RuleDeclaration {
   std::string name;
   BondRange bonds = BondRange::reference;
-  std::vector<RuleField> constants;   // of a bond, never changed: what the reference body says of it
-  std::vector<RuleField> bond;        // of a bond, kept from step to step
-  std::vector<RuleField> particle;    // of a particle, besides its state
-  std::vector<std::string> ready;     // of those, what is made of the state before the first round
-  std::vector<RuleRound> rounds;      // in order
-  std::vector<RuleField> shown = {};  // of a particle, for those who look at it: RoundsTerms::shown()
+  std::vector<RuleField> constants;    // of a bond, never changed: what the reference body says of it
+  std::vector<RuleField> bond;         // of a bond, kept from step to step
+  std::vector<RuleField> particle;     // of a particle, besides its state
+  std::vector<std::string> ready;      // of those, what is made of the state before the first round
+  std::vector<RuleRound> rounds;       // in order
+  std::vector<RuleField> shown = {};   // of a particle, for those who look at it: RoundsTerms::shown()
+  std::vector<std::string> kept = {};  // particle fields that go on from step to step
+  bool moves = true;                   // else no particle does, and no round makes a force
 };
 
 // The field that the last round makes and the step adds to the momentum, N.

@@ -205,7 +205,8 @@ std::vector<DeclarationLine> LpsRule::settings() const {
   return lines;
 }
 
-std::unique_ptr<RoundsTerms> LpsRule::bind(const Body& body, const Periodic& periodic, int threads) const {
+std::unique_ptr<RoundsTerms> LpsRule::bind(const Rule&, const Body& body, const Periodic& periodic,
+                                           int threads) const {
   return make_lps_terms(material_, full_weight(material_, full_),
                         reference_bonds(body.x, periodic, material_.horizon, slits_), body.x, unbreakable_,
                         threads);

@@ -85,7 +85,8 @@ class LpsRule final : public RoundsRule {
   double stiffness() const override;
   double sound_speed(double mass) const override;
   std::vector<DeclarationLine> settings() const override;
-  std::unique_ptr<RoundsTerms> bind(const Body& body, const Periodic& periodic, int threads) const override;
+  std::unique_ptr<RoundsTerms> bind(const Rule&, const Body& body, const Periodic& periodic,
+                                    int threads) const override;
 
   const LpsMaterial& material() const { return material_; }
   const std::vector<Vec3>& full() const { return full_; }

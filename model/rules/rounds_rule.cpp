@@ -59,8 +59,13 @@ bool has_bond_memory(const Rule& rule) {
   return rounds != nullptr && !rounds->declaration().bond.empty();
 }
 
+bool has_memory(const Rule& rule) {
+  const RoundsRule* rounds = rounds_of(rule);
+  return has_bond_memory(rule) || (rounds != nullptr && !rounds->declaration().kept.empty());
+}
+
 Body with_bonds(const Rule& rule, Body body, const Body& start) {
-  if (!has_reference_bonds(rule)) return body;
+  if (!has_reference_bonds(rule) && !has_memory(rule)) return body;
   body.bonds = start.bonds ? start.bonds : std::make_shared<BondState>(BondState{start.x, {}});
   return body;
 }

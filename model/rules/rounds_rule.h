@@ -22,10 +22,14 @@ class RoundsTerms {
   // Before the first round, from the positions, m by id, in no image: what the declaration calls `ready`.
   // std::runtime_error where a position is not finite.
   virtual void begin(const std::vector<Vec3>& x) = 0;
+  // Before begin(), for terms that read them: m/s, by id, half a step before the positions.
+  virtual void velocities(const std::vector<Vec3>&) {}
   // The pair term of a round, which sums over a particle's bonds by ascending id of the other. With `keeps`
   // the bonds' own fields change: a step was made; else the state is only looked at.
   virtual void pair(size_t round, size_t begin, size_t end, bool keeps) = 0;
   virtual void finish(size_t round, size_t begin, size_t end) = 0;
+  // After all rows of a round, by one thread: what the finish made is there for the next one.
+  virtual void end(size_t, bool) {}
   // N, on each particle, by the last round.
   virtual const std::vector<Vec3>& force() const = 0;
 
@@ -65,7 +69,8 @@ class RoundsRule {
   // What sets it apart from another, in SI units: for people, and for the hash of a run.
   virtual std::vector<DeclarationLine> settings() const = 0;
   // InputError where the body does not fit: a particle with too few bonds, ...
-  virtual std::unique_ptr<RoundsTerms> bind(const Body& body, const Periodic& periodic,
+  // `rule`: with masses and the time step.
+  virtual std::unique_ptr<RoundsTerms> bind(const Rule& rule, const Body& body, const Periodic& periodic,
                                             int threads) const = 0;
 };
 
@@ -79,8 +84,10 @@ const RoundsRule* rounds_of(const Rule& rule);
 bool has_reference_bonds(const Rule& rule);
 // Whether bonds keep what they went through: a body that goes on must bring it.
 bool has_bond_memory(const Rule& rule);
-// The body with Body::bonds, where the rule's are those of the body as packed: those of `start`, or, where it
-// has none, of where its particles are.
+// Whether bonds or particles keep something: a state without it is no state of the rule.
+bool has_memory(const Rule& rule);
+// The body with Body::bonds, where the rule's are those of the body as packed or the rule has a memory: those
+// of `start`, or, where it has none, of where its particles are.
 Body with_bonds(const Rule& rule, Body body, const Body& start);
 
 // Body::bonds of the terms, where the body has them, and back. recall_bonds: InputError where the bonds are

@@ -122,7 +122,8 @@ class TersoffRule final : public RoundsRule {
             set("R, D", fmt::format("{} angstrom, {} angstrom", t.R, t.D),
                 "the potential falls from R - D to R + D")};
   }
-  std::unique_ptr<RoundsTerms> bind(const Body& body, const Periodic& periodic, int threads) const override {
+  std::unique_ptr<RoundsTerms> bind(const Rule&, const Body& body, const Periodic& periodic,
+                                    int threads) const override {
     auto terms = std::make_unique<TersoffRounds>(tersoff_, body, periodic, threads);
     try {
       terms->begin(body.x);

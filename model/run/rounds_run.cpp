@@ -74,12 +74,26 @@ Reading RoundsRun::read(const Asked& asked) {
   const std::vector<Vec3> force = engine_->forces();
   Reading reading = read_body(scene_.rule, now, force, late, asked);
   reading.step = step_;
+  if (asked.fields) reading.fields = fields_of(asked.ids);
   if (!asked.energies) return reading;
   reading.energies.potential = engine_->terms()->energy();
   if (asked.watch) asked.watch->see(step_, now, force, reading.energies);
   if (asked.volume > 0)
     for (size_t i = 0; i < now.size(); ++i) reading.stress += engine_->terms()->stress(i, asked.volume);
   return reading;
+}
+
+std::vector<std::vector<double>> RoundsRun::fields_of(std::span<const uint32_t> ids) {
+  const std::vector<std::vector<double>> all = engine_->terms()->shown();
+  std::vector<std::vector<double>> fields;
+  for (const std::vector<double>& values : all) {
+    const size_t numbers = values.size() / body_.size();
+    std::vector<double>& of = fields.emplace_back();
+    for (const uint32_t id : ids)
+      of.insert(of.end(), values.begin() + static_cast<ptrdiff_t>(numbers * id),
+                values.begin() + static_cast<ptrdiff_t>(numbers * (id + 1)));
+  }
+  return fields;
 }
 
 Momentum RoundsRun::momentum() {

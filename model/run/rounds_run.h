@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "model/run/engine.h"
@@ -40,6 +41,8 @@ class RoundsRun : public Engine {
 
  private:
   const Body& body();
+  // As Reading::fields.
+  std::vector<std::vector<double>> fields_of(std::span<const uint32_t> ids);
 
   const Scene& scene_;
   std::unique_ptr<RealOptions> options_;

@@ -53,11 +53,13 @@ std::shared_ptr<const BondState> bonds_of(const Scene& scene, const LeftState& l
                       "a run of this scene's [rule] leaves a state that it can go on from");
   };
   const BondState* there = left.body.bonds.get();
-  if (has_bond_memory(scene.rule) && there == nullptr)
-    refuse("does not say which bonds are broken: another rule left it, or an older program");
-  if (!has_bond_memory(scene.rule) && there != nullptr && !there->kept.empty())
+  if (has_memory(scene.rule) && there == nullptr)
+    refuse(has_bond_memory(scene.rule)
+               ? "does not say which bonds are broken: another rule left it, or an older program"
+               : "does not hold the fields of the rule's particles: another rule left it");
+  if (!has_memory(scene.rule) && there != nullptr && !there->kept.empty())
     refuse("holds bonds that can break, and here none can: they would heal");
-  if (!has_reference_bonds(scene.rule)) return nullptr;
+  if (!has_reference_bonds(scene.rule) && !has_memory(scene.rule)) return nullptr;
   return std::make_shared<BondState>(
       BondState{scene.packing().x, there != nullptr ? there->kept : std::vector<uint64_t>()});
 }

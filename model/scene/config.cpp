@@ -205,6 +205,27 @@ void ConfigValue::fail(const std::string& message, const std::string& hint) cons
   fail_at(*file_, node_->line, node_->column, message, hint);
 }
 
+void ConfigValue::fail_in(size_t byte, const std::string& message, const std::string& hint) const {
+  const std::string_view line = line_of(file_->text, node_->line);
+  // The text begins behind the quotes, and stands in the file as it is where nothing is escaped.
+  size_t at = static_cast<size_t>(line.data() - file_->text.data());
+  for (int column = 1; column < node_->column && at < file_->text.size(); ++column) {
+    ++at;
+    while (at < file_->text.size() && (static_cast<unsigned char>(file_->text[at]) & 0xc0) == 0x80) ++at;
+  }
+  const std::string_view rest = std::string_view(file_->text).substr(at);
+  const bool long_quotes = rest.starts_with("\"\"\"") || rest.starts_with("'''");
+  at += long_quotes ? 3 : 1;
+  if (long_quotes && at < file_->text.size() && file_->text[at] == '\n') ++at;
+  if (std::string_view(file_->text).substr(at, node_->text.size()) != node_->text ||
+      byte > node_->text.size())
+    fail(message, hint);
+  const std::string_view before(file_->text.data(), at + byte);
+  const int number = static_cast<int>(std::ranges::count(before, '\n')) + 1;
+  const size_t begin = before.rfind('\n') + 1;  // npos + 1 is 0
+  fail_at(*file_, number, characters(before.substr(begin)) + 1, message, hint);
+}
+
 void ConfigValue::wants(const std::string& what) const {
   fail(fmt::format("'{}' must be {}, not {}", node_->key, what, kind_name(node_->kind)));
 }

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "model/base/places.h"
+#include "model/base/units.h"
 #include "model/base/vec.h"
-#include "model/scene/units.h"
 
 namespace cuboct {
 
@@ -79,6 +79,8 @@ class ConfigValue {
 
   // Adds the place of this value to others, under `path`.
   void mark(Places& places, const std::string& path) const;
+  // Throws InputError that points to a byte of a string's text.
+  [[noreturn]] void fail_in(size_t byte, const std::string& message, const std::string& hint = {}) const;
   // Throws InputError that points here.
   [[noreturn]] void fail(const std::string& message, const std::string& hint = {}) const;
 

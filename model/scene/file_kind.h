@@ -13,6 +13,7 @@ namespace cuboct {
 enum class FileKind {
   scene,
   arch,
+  rule,           // of a scene's rule
   study,          // of settings: cuboct explore
   machine_study,  // cuboct explore
   curve_fit,      // cuboct fit

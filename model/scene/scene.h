@@ -48,6 +48,7 @@ struct Probe {
     velocity,        // mean of a set, m/s: velocity_x, velocity_y, velocity_z; or velocity, along an axis
     kinetic_energy,  // of a set, J
     temperature,     // of the motion of a set about its mean velocity
+    field,           // mean of a field of the rule over a set: its name, of a vector with _x, _y, _z
   };
   Kind kind = Kind::force;
   std::string name;
@@ -61,7 +62,11 @@ struct Probe {
   double scale = 0;
   // The masses of the set's particles over rule.mass, where they differ: factors of v^2 and of the mean.
   std::vector<double> relative;
-  std::string unit;                    // of temperature: K, in reduced units J
+  std::string unit;  // of temperature: K, in reduced units J; of a field
+  // field: its name, which of the declaration's `shown` it is, and how many numbers it has.
+  std::string field;
+  size_t field_at = 0;
+  int numbers = 1;
   std::optional<Datasheet> datasheet;  // stress_strain: what the material is said to show
   // crack:
   double bond_length = 0;            // m, particles that begin nearer to each other have a bond

@@ -103,6 +103,8 @@ std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice
 // Its kinds.
 RuleChoice read_lps_rule(const ConfigTable& table, const PackingChoice* packing);
 RuleChoice read_tersoff_rule(const ConfigTable& table, CrystalChoice* crystal);
+// A rule as text: the path of its file, or a table that has its parts.
+RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing);
 // What no rule of rounds can do.
 void check_rounds_body(const ConfigTable& root, const Scene& scene);
 

@@ -53,6 +53,22 @@ Datasheet read_datasheet(const ConfigTable& table) {
   return sheet;
 }
 
+void read_field(const ConfigTable& table, const Scene& scene, Probe& probe) {
+  const ConfigValue field = table.at("field");
+  const RoundsRule* rule = rounds_of(scene.rule);
+  if (rule == nullptr || rule->declaration().shown.empty())
+    table.at("kind").fail("a field probe reads fields of a [rule], and there are none here");
+  const std::vector<RuleField>& shown = rule->declaration().shown;
+  std::vector<std::string> names;
+  for (const RuleField& one : shown) names.push_back(one.name);
+  probe.field_at = field.choice("field", names);
+  probe.field = names[probe.field_at];
+  probe.numbers = shown[probe.field_at].numbers;
+  if (probe.numbers != 1 && probe.numbers != 3)
+    field.fail(fmt::format("'{}' is no number and no vector: frames have it", probe.field));
+  probe.unit = shown[probe.field_at].unit.empty() ? "1" : shown[probe.field_at].unit;
+}
+
 // The region is read.
 void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
   if (rounds_of(scene.rule) != nullptr)
@@ -74,7 +90,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
   for (const ConfigTable& table : root.tables("probe")) {
     Probe probe;
     const std::vector<std::string> kinds = {"force",    "displacement",   "stress_strain", "crack",
-                                            "velocity", "kinetic_energy", "temperature"};
+                                            "velocity", "kinetic_energy", "temperature",   "field"};
     probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
     probe.name = read_name(table.at("name"));
     for (const Probe& other : scene.probes)
@@ -101,6 +117,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
       probe.set = set("region", probe.name);
       probe.scale = scene.rule.mass / 2;
       if (probe.kind == Probe::Kind::temperature) read_temperature(table, scene, probe);
+      if (probe.kind == Probe::Kind::field) read_field(table, scene, probe);
       if (crack) read_crack(table, scene, probe);
       if (!scene.rule.masses.empty())
         for (const uint32_t id : probe.set.ids)

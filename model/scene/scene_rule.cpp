@@ -29,16 +29,24 @@ void check_rounds_body(const ConfigTable& root, const Scene& scene) {
 
 std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice* packing,
                                     CrystalChoice* crystal) {
-  const auto table = root.table_at("rule");
-  if (!table) {
+  const auto value = root.find("rule");
+  if (!value) {
     if (crystal != nullptr) crystal->table.fail("a crystal of atoms needs [rule]", "kind = \"tersoff\"");
     return std::nullopt;
   }
   root.not_both("law", "rule");
   refuse_pairs(root);
-  table->record_as("rule");
   if (packing != nullptr && packing->fcc.pitch == 0)
-    table->fail("a rule of rounds needs a given pitch, not \"relaxed\"");
+    value->fail("a rule of rounds needs a given pitch, not \"relaxed\"");
+  const std::optional<ConfigTable> table = value->is_table() ? root.table_at("rule") : std::nullopt;
+  if (table) table->record_as("rule");
+  if (!table || !table->has("kind")) {
+    if (crystal != nullptr)
+      crystal->table.fail("a crystal of atoms serves kind = \"tersoff\" alone",
+                          "[packing] has the particles of other rules");
+    if (table && !table->has("file") && !table->has("reach")) table->at("kind");
+    return read_program_rule(*value, packing);
+  }
   const ConfigValue kind = table->at("kind");
   if (kind.choice("rule", {"lps", "tersoff"}) == 0) {
     if (crystal != nullptr)

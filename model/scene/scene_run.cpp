@@ -18,6 +18,14 @@ struct CurveOf {
   Quantity quantity;
 };
 
+Quantity quantity_of(const Probe& probe) {
+  try {
+    return {parse_quantity("1 " + probe.unit).dimension, "a value of the field", "1"};
+  } catch (const UnitError&) {
+    return quantity::number;
+  }
+}
+
 // Those that model/analysis/measure.h makes of the probe.
 std::vector<CurveOf> curves_of(const Probe& probe) {
   std::vector<CurveOf> curves;
@@ -50,6 +58,11 @@ std::vector<CurveOf> curves_of(const Probe& probe) {
       break;
     case Probe::Kind::temperature:
       add("temperature", quantity::temperature);
+      break;
+    case Probe::Kind::field:
+      if (probe.numbers == 1) add(probe.field, quantity_of(probe));
+      for (int k = 0; probe.numbers > 1 && k < probe.numbers; ++k)
+        add(fmt::format("{}_{}", probe.field, "xyz"[k]), quantity_of(probe));
       break;
   }
   return curves;

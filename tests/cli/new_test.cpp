@@ -33,7 +33,7 @@ std::vector<std::string> listed() {
 TEST(New, ListsEveryTemplate) {
   const std::vector<std::string> names = listed();
   EXPECT_EQ(names, (std::vector<std::string>{"tension", "impact", "drop", "beam", "gas", "metal", "crack",
-                                             "sheet", "release"}));
+                                             "sheet", "release", "rule"}));
   size_t files = 0;
   for (const auto& entry : fs::directory_iterator(kTemplates)) files += entry.path().extension() == ".toml";
   EXPECT_EQ(files, names.size());
@@ -77,9 +77,10 @@ TEST(New, ReplacesNothingUnasked) {
   EXPECT_EQ(refusal({"new"}), "no NAME for the scene\n  hint: cuboct new --list tells what there is\n");
   EXPECT_EQ(refusal({"new", bench.path("b"), "--like", "tensoin"}),
             "unknown template 'tensoin'\n  hint: did you mean 'tension'?\n");
-  EXPECT_EQ(refusal({"new", bench.path("b"), "--like", "x"}),
-            "unknown template 'x'\n  hint: one of tension, impact, drop, beam, gas, metal, crack, sheet or "
-            "release\n");
+  EXPECT_EQ(
+      refusal({"new", bench.path("b"), "--like", "x"}),
+      "unknown template 'x'\n  hint: one of tension, impact, drop, beam, gas, metal, crack, sheet, release "
+      "or rule\n");
   EXPECT_EQ(refusal({"new", bench.path("none/b")}),
             "cannot write " + bench.path("none/b.toml") + ": No such file or directory\n");
   EXPECT_FALSE(fs::exists(bench.path("b.toml")));
@@ -125,6 +126,24 @@ class Template : public testing::Test {
   nlohmann::json summary_;
   Trace trace_;
 };
+
+// The means of both halves of a bar of length L by the heat equation, t s after they begin 50 K above and
+// below: 50 K 8/pi^2 sum over odd n of exp(-(n pi/L)^2 t k/(c density))/n^2 away from the mean. 41 layers
+// less one stand pitch/sqrt(2) apart.
+TEST_F(Template, ARuleOfTextConductsHeat) {
+  run("rule");
+  const double length = 40e-3 / std::sqrt(2), rate = 50 / (500 * 7800.0), time = told("simulated_time");
+  double away = 0;
+  for (int n = 1; n < 20; n += 2) {
+    const double wave = n * std::numbers::pi / length;
+    away += std::exp(-wave * wave * rate * time) / (n * n);
+  }
+  away *= 50 * 8 / (std::numbers::pi * std::numbers::pi);
+  // Layers are 1/40 of the bar: their waves lag by (pi/40)^2/12 of a rate of 0.95.
+  EXPECT_NEAR(told("left.T"), 350 - away, 0.02);
+  EXPECT_NEAR(told("right.T"), 350 + away, 0.02);
+  EXPECT_NEAR(told("left.T"), 334.3, 0.05);
+}
 
 TEST_F(Template, TensionHasTheModulusThatIsGiven) {
   run("tension");

@@ -32,7 +32,7 @@ TEST(Symbol, IsTheOperatorOfTheEngine) {
   Body body;
   body.x = grid.all();
   const Vec3 extent(12 * grid.spacing[0], 12 * grid.spacing[1], 0);
-  const auto terms = LpsRule(material, {}).bind(body, {-extent / 2, extent}, 1);
+  const auto terms = LpsRule(material, {}).bind({}, body, {-extent / 2, extent}, 1);
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0, 1e-12);
   std::vector<Vec3> u;

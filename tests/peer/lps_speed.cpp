@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   Body body = block(side);
   if (argc == 4) return write(body, side, argv[3]), 0;
   const LpsRule rule(glass(), simple_cubic_bonds(kSpacing, kHorizon));
-  const auto terms = rule.bind(body, {}, 1);
+  const auto terms = rule.bind({}, body, {}, 1);
   evaluate(*terms, body);
   for (int step = 0; step < std::atoi(argv[2]); ++step) {
     kick(*terms, body);

@@ -33,7 +33,7 @@ class LpsBody {
  public:
   LpsBody(const LpsMaterial& material, const std::vector<Vec3>& full, const Body& body,
           const Periodic& periodic = {}, std::vector<Slit> slits = {})
-      : size_(body.size()), terms_(LpsRule(material, full, std::move(slits)).bind(body, periodic, 1)) {}
+      : size_(body.size()), terms_(LpsRule(material, full, std::move(slits)).bind({}, body, periodic, 1)) {}
 
   const std::vector<Vec3>& forces(const std::vector<Vec3>& x, bool keeps = false) {
     terms_->begin(x);

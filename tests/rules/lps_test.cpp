@@ -122,7 +122,7 @@ TEST(Lps, BondsKeepTheirDamageThroughACheckpoint) {
   LpsBody first(m, full, body);
   const std::vector<Vec3> x = shaken(body.x, 0.02);
   first.forces(x, true);
-  auto other = rule.bind(body, {}, 1);
+  auto other = rule.bind({}, body, {}, 1);
   EXPECT_THROW(other->recall({1, 2, 3}), InputError);
   other->recall(first.terms().memory());
   EXPECT_EQ(other->memory(), first.terms().memory());

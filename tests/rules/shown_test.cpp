@@ -82,7 +82,7 @@ TEST(Shown, FramesHaveWhatTheRuleShowsOfTheirState) {
   ASSERT_EQ(frame.shown.size(), 2u);
   // The dilatation of these positions with these bonds: by a second look at the state alone.
   const auto* rounds = rounds_of(scene.rule);
-  const auto terms = rounds->bind(scene.packing(), scene.periodic, 1);
+  const auto terms = rounds->bind(scene.rule, scene.packing(), scene.periodic, 1);
   recall_bonds(*terms, *run.saved_body());
   terms->begin(frame.x);
   for (size_t round = 0; round < 2; ++round) {

@@ -30,7 +30,7 @@ TEST(FileKinds, OfAllExamples) {
   const std::vector<FileKind> kinds{FileKind::scene,         FileKind::arch,          FileKind::study,
                                     FileKind::machine_study, FileKind::curve_fit,     FileKind::potential_fit,
                                     FileKind::learn_study,   FileKind::element_study, FileKind::technology,
-                                    FileKind::run_record};
+                                    FileKind::run_record,    FileKind::rule};
   std::map<FileKind, int> seen;
   for (const char* folder : {"scenes", "technologies"})
     for (const auto& entry : fs::recursive_directory_iterator(kRoot + "/" + folder)) {

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// Formulas into nodes of a graph: names get their meaning, units are checked.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+
+#include "model/program/expression.h"
+#include "model/program/real_graph.h"
+
+namespace cuboct {
+
+// A formula, and who tells that it is wrong: `fail` throws InputError with the place in its file.
+struct Formula {
+  std::string text;
+  Expression expression;
+  std::function<void(const FormulaError&)> fail;
+};
+
+// What a formula or a name stands for.
+struct Value {
+  enum class Kind : unsigned char { number, vector, truth };
+  Kind kind = Kind::number;
+  Dimension dimension;
+  std::array<NodeId, 3> node{};  // one, or x, y, z
+};
+
+// The names that a formula may use. A name's nodes are made when it is first used.
+class Scope {
+ public:
+  // `units`: whether dimensions are checked; else all are plain numbers.
+  Scope(RealGraph& graph, bool units) : graph_(graph), units_(units) {}
+
+  RealGraph& graph() { return graph_; }
+  // From now on the name means this.
+  void define(const std::string& name, std::function<Value()> make) {
+    names_[name] = std::move(make);
+    made_.clear();
+  }
+  // Formulas by name, which mean what they mean where they are used. They must outlive the scope.
+  void define_lets(const std::map<std::string, Formula>& lets) { lets_ = &lets; }
+  // Inputs of one, or of x, y, z; `first` is the index of the first.
+  void define_number(const std::string& name, RealSource source, uint32_t index, const Dimension& dimension,
+                     Value::Kind kind = Value::Kind::number);
+  void define_vector(const std::string& name, RealSource source, uint32_t first, const Dimension& dimension);
+  void define_constant(const std::string& name, double value, const Dimension& dimension);
+
+  // Throws what the formula's `fail` throws.
+  Value value_of(const Formula& formula);
+  // The same of a known kind and dimension; `what` completes "... must be": "sum 'force'".
+  Value value_of(const Formula& formula, const std::string& what, Value::Kind kind,
+                 const Dimension& dimension);
+
+ private:
+  friend class Compiler;
+  Value named(const Expression& name);
+
+  RealGraph& graph_;
+  bool units_;
+  std::map<std::string, std::function<Value()>> names_;
+  const std::map<std::string, Formula>* lets_ = nullptr;
+  std::map<std::string, Value> made_;
+  std::set<std::string> open_;  // lets that are being compiled
+};
+
+}  // namespace cuboct

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Formulas as one graph of numbers: each node an operation on nodes before it, none there twice. Vectors are
+// three nodes, truths are 0 or 1. In SI units, in doubles.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace cuboct {
+
+enum class RealOp : uint8_t {
+  constant,
+  input,
+  add,
+  subtract,
+  multiply,
+  divide,
+  negate,
+  square_root,
+  exponential,
+  logarithm,
+  sine,
+  cosine,
+  power,  // of a constant exponent
+  absolute,
+  least,
+  most,
+  below,    // a < b
+  at_most,  // a <= b
+  equal,
+  both,
+  either,
+  inverse,  // not
+  select,   // a != 0 ? b : c
+};
+
+// Where an input comes from. `own` is the particle that sums, `other` the one at the bond's far end.
+enum class RealSource : uint8_t {
+  difference,    // from own to other, of the nearest image; m, by axis
+  packed,        // the same in the body as packed
+  own_velocity,  // m/s, by axis
+  other_velocity,
+  own_mass,  // kg
+  other_mass,
+  own_field,  // index: a number of the fields, one after another
+  other_field,
+  bond_field,  // index: a field of bonds
+  position,    // own, m, by axis
+  sum,         // index: a number of the round's sums, one after another
+  time_step,   // s
+  made,        // 1 where a step is made, 0 where the state is only looked at
+};
+
+struct RealInput {
+  RealSource source = RealSource::difference;
+  uint32_t index = 0;  // the axis, or the number
+  bool operator==(const RealInput&) const = default;
+  auto operator<=>(const RealInput&) const = default;
+};
+
+using NodeId = uint32_t;
+
+struct RealNode {
+  RealOp op = RealOp::constant;
+  std::array<NodeId, 3> of{};
+  double value = 0;   // of a constant
+  RealInput input{};  // of an input
+};
+
+// How many nodes an operation takes.
+int arity(RealOp op);
+inline double applied(RealOp op, double a, double b, double c) {
+  switch (op) {
+    case RealOp::add:
+      return a + b;
+    case RealOp::subtract:
+      return a - b;
+    case RealOp::multiply:
+      return a * b;
+    case RealOp::divide:
+      return a / b;
+    case RealOp::negate:
+      return -a;
+    case RealOp::square_root:
+      return std::sqrt(a);
+    case RealOp::exponential:
+      return std::exp(a);
+    case RealOp::logarithm:
+      return std::log(a);
+    case RealOp::sine:
+      return std::sin(a);
+    case RealOp::cosine:
+      return std::cos(a);
+    case RealOp::power:
+      return std::pow(a, b);
+    case RealOp::absolute:
+      return std::abs(a);
+    case RealOp::least:
+      return std::min(a, b);
+    case RealOp::most:
+      return std::max(a, b);
+    case RealOp::below:
+      return a < b;
+    case RealOp::at_most:
+      return a <= b;
+    case RealOp::equal:
+      return a == b;
+    case RealOp::both:
+      return a != 0 && b != 0;
+    case RealOp::either:
+      return a != 0 || b != 0;
+    case RealOp::inverse:
+      return a == 0;
+    case RealOp::select:
+      return a != 0 ? b : c;
+    case RealOp::constant:
+    case RealOp::input:
+      break;
+  }
+  return 0;
+}
+
+class RealGraph {
+ public:
+  // Constants are folded, and what is there already is not made again.
+  NodeId constant(double value);
+  NodeId input(RealSource source, uint32_t index = 0);
+  NodeId add(RealOp op, NodeId a, NodeId b = 0, NodeId c = 0);
+
+  const std::vector<RealNode>& nodes() const { return nodes_; }
+  const RealNode& at(NodeId id) const { return nodes_[id]; }
+  // Whether any node reads such an input.
+  bool reads(RealSource source) const;
+
+ private:
+  NodeId keep(const RealNode& node);
+  NodeId whole_power(NodeId a, int exponent);
+
+  std::vector<RealNode> nodes_;
+  std::map<std::tuple<RealOp, std::array<NodeId, 3>, uint64_t, RealInput>, NodeId> known_;
+};
+
+}  // namespace cuboct

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// A rule's text understood: every formula is part of a graph. In SI units, in doubles.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/program/real_graph.h"
+#include "model/program/rule_text.h"
+#include "model/rules/declaration.h"
+
+namespace cuboct {
+
+// Fields and sums are counted in numbers, one after another: a vector has three.
+struct ProgramField {
+  std::string name;
+  Value::Kind kind = Value::Kind::number;
+  uint32_t first = 0;           // of its numbers
+  bool kept = false;            // goes on from step to step
+  bool shown = true;            // in frames
+  std::vector<NodeId> start{};  // of the graph of starts
+  uint32_t numbers() const { return kind == Value::Kind::vector ? 3 : 1; }
+};
+
+// A number that a node gives.
+struct ProgramWrite {
+  uint32_t number = 0;
+  NodeId node = 0;
+};
+
+struct ProgramRound {
+  std::string name;
+  RealGraph pair;                   // of one particle and one bond of it
+  std::vector<NodeId> terms;        // by number of the sums
+  std::vector<NodeId> when;         // the same: the truth that lets a term count
+  std::vector<ProgramWrite> bonds;  // before the terms, which see what was written
+  RealGraph finish;                 // of one particle
+  std::vector<ProgramWrite> made;   // by number of the particle fields
+};
+
+struct RuleProgram {
+  RuleDeclaration declaration;
+  double reach = 0;      // m
+  double stiffness = 0;  // N/m; 0: unknown
+  bool still = false;
+  std::vector<ProgramField> particle, bond;
+  uint32_t particle_numbers = 0, bond_numbers = 0;
+  uint32_t force = 0;           // the first number of the force; not where still
+  RealGraph start, bond_start;  // of the fields' starts
+  std::vector<ProgramRound> setup, rounds;
+  // Of a bond: J, half of each particle; whether it is broken. Of a particle: J.
+  RealGraph pair_energy, particle_energy, broken;
+  std::optional<NodeId> pair_energy_at, particle_energy_at, broken_at;
+  std::vector<DeclarationLine> settings;
+};
+
+// What the scene gives a rule.
+struct ProgramPlace {
+  double pitch = 0;  // m, of the packing; 0: there is none
+};
+
+// InputError, with its place, where the text does not hold together.
+RuleProgram understood(const RuleText& text, const ProgramPlace& place);
+
+}  // namespace cuboct

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// A rule as text: rule = "heat.toml" of a scene, or its tables within [rule].
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "model/program/program_rule.h"
+#include "model/scene/file_kind.h"
+#include "model/scene/scene_parts.h"
+
+namespace cuboct {
+namespace {
+
+Formula formula_of(const ConfigValue& value) {
+  const auto fail = [value](const FormulaError& error) {
+    value.fail_in(error.at, error.message, error.hint);
+  };
+  if (value.is_number()) {
+    Expression number;
+    number.value = value.number(quantity::number);
+    return {fmt::format("{}", number.value), number,
+            [value](const FormulaError& error) { value.fail(error.message, error.hint); }};
+  }
+  try {
+    return {value.string(), parse_expression(value.string()), fail};
+  } catch (const FormulaError& error) {
+    fail(error);
+    throw;
+  }
+}
+
+std::optional<Formula> formula_at(const ConfigTable& table, const std::string& key) {
+  const auto value = table.find(key);
+  return value ? std::optional(formula_of(*value)) : std::nullopt;
+}
+
+std::function<void(const std::string&, const std::string&)> failing(const ConfigValue& value) {
+  return [value](const std::string& message, const std::string& hint) { value.fail(message, hint); };
+}
+
+// Of any dimension.
+ParsedQuantity quantity_of(const ConfigValue& value, const std::string& text) {
+  try {
+    const ParsedQuantity q = parse_quantity(text);
+    if (q.list) value.fail(fmt::format("'{}' must be one value", value.key()));
+    return q;
+  } catch (const UnitError& error) {
+    value.fail(error.message, error.hint);
+  }
+}
+
+// A table whose keys are names that the user chose.
+std::optional<ConfigTable> names_at(const ConfigTable& table, const std::string& key) {
+  const auto names = table.table_at(key);
+  if (names) names->record_as("names");
+  return names;
+}
+
+RuleText::Parameter parameter_of(const ConfigValue& value) {
+  if (value.is_number()) {
+    const double number = value.number(quantity::number);
+    return {number, {}, fmt::format("{}", number)};
+  }
+  if (value.reduced()) value.fail(fmt::format("'{}' must be a plain number", value.key()));
+  const std::string text = value.string();
+  const ParsedQuantity q = quantity_of(value, text);
+  return {q.values[0], q.dimension, text};
+}
+
+// A name of the user's: as formulas take it.
+void check_name(const ConfigValue& value) {
+  const std::string& name = value.key();
+  const Expression e = [&] {
+    try {
+      return parse_expression(name);
+    } catch (const FormulaError&) {
+      return Expression{};
+    }
+  }();
+  if (e.kind != Expression::Kind::name || e.text != name)
+    value.fail(fmt::format("'{}' is no name", name), "letters, digits and '_'");
+  if (name.ends_with("_i") || name.ends_with("_j"))
+    value.fail(fmt::format("'{}' ends as a particle's own or other field does", name));
+}
+
+RuleText::Field field_of(const ConfigTable& table) {
+  RuleText::Field field;
+  field.name = table.key();
+  check_name(table);
+  if (const auto kind = table.find("kind"))
+    field.kind = static_cast<Value::Kind>(kind->choice("kind", {"number", "vector", "truth"}));
+  if (const auto unit = table.find("unit")) {
+    if (field.kind == Value::Kind::truth) unit->fail("a truth has no unit");
+    if (unit->reduced()) unit->fail("units = \"reduced\": there are none");
+    field.unit = unit->string();
+    field.dimension = quantity_of(*unit, "1 " + field.unit).dimension;
+  }
+  field.what = table.string_or("what", "");
+  field.start = formula_at(table, "start");
+  field.fail = failing(table);
+  return field;
+}
+
+std::vector<RuleText::Field> fields_of(const ConfigTable& table, const std::string& key, bool shown) {
+  std::vector<RuleText::Field> fields;
+  const auto all = names_at(table, key);
+  if (!all) return fields;
+  for (const std::string& name : all->names()) {
+    const ConfigTable one = all->at(name).table();
+    one.record_as("rule");
+    fields.push_back(field_of(one));
+    if (shown) fields.back().shown = one.boolean_or("shown", true);
+  }
+  return fields;
+}
+
+std::vector<RuleText::Write> writes_of(const ConfigTable& round, const std::string& key) {
+  std::vector<RuleText::Write> writes;
+  if (const auto table = names_at(round, key))
+    for (const std::string& name : table->names()) writes.push_back({name, formula_of(table->at(name))});
+  return writes;
+}
+
+RuleText::Sum sum_of(const ConfigValue& value) {
+  check_name(value);
+  if (!value.is_table()) return {value.key(), formula_of(value), {}};
+  const ConfigTable table = value.table();
+  table.record_as("rule");
+  return {value.key(), formula_of(table.at("is")), formula_at(table, "when")};
+}
+
+std::vector<RuleText::Round> rounds_in(const ConfigTable& table, const std::string& key) {
+  std::vector<RuleText::Round> rounds;
+  for (const ConfigTable& one : table.tables(key)) {
+    one.record_as("rule");
+    RuleText::Round round;
+    round.name = one.string_or("name", fmt::format("{} {}", key, rounds.size() + 1));
+    if (const auto sums = names_at(one, "sum"))
+      for (const std::string& name : sums->names()) round.sums.push_back(sum_of(sums->at(name)));
+    round.bonds = writes_of(one, "bond");
+    round.finishes = writes_of(one, "finish");
+    round.fail = failing(one);
+    rounds.push_back(std::move(round));
+  }
+  return rounds;
+}
+
+void read_values(const ConfigTable& table, RuleText& text) {
+  if (const auto parameters = names_at(table, "parameters"))
+    for (const std::string& name : parameters->names()) {
+      const ConfigValue value = parameters->at(name);
+      check_name(value);
+      text.parameters[name] = parameter_of(value);
+    }
+  if (const auto lets = names_at(table, "let"))
+    for (const std::string& name : lets->names()) {
+      check_name(lets->at(name));
+      text.lets.emplace(name, formula_of(lets->at(name)));
+    }
+  if (const auto energy = table.table_at("energy")) {
+    energy->record_as("rule");
+    text.pair_energy = formula_at(*energy, "pair");
+    text.particle_energy = formula_at(*energy, "particle");
+  }
+}
+
+RuleText rule_text(const ConfigTable& table) {
+  RuleText text;
+  text.units = !table.reduced();
+  text.name = table.string_or("name", "own");
+  if (const auto bonds = table.find("bonds"))
+    text.range =
+        bonds->choice("bonds", {"current", "reference"}) == 0 ? BondRange::current : BondRange::reference;
+  text.still = table.boolean_or("still", false);
+  text.reach = formula_of(table.at("reach"));
+  text.stiffness = formula_at(table, "stiffness");
+  text.broken = formula_at(table, "broken");
+  read_values(table, text);
+  text.particle = fields_of(table, "particle", true);
+  text.bond = fields_of(table, "bond", false);
+  if (!text.bond.empty() && text.range == BondRange::current)
+    table.at("bond").fail("bonds of the moment hold nothing", "bonds = \"reference\"");
+  text.setup = rounds_in(table, "setup");
+  text.rounds = rounds_in(table, "round");
+  if (text.rounds.empty()) table.fail("a rule needs a [[round]]");
+  return text;
+}
+
+// The scene's own values of the file's parameters.
+void set_parameters(const ConfigTable& rule, RuleText& text) {
+  const auto own = names_at(rule, "parameters");
+  if (!own) return;
+  for (const std::string& name : own->names()) {
+    const ConfigValue value = own->at(name);
+    const auto at = text.parameters.find(name);
+    if (at == text.parameters.end()) value.fail(fmt::format("the rule has no parameter '{}'", name));
+    const RuleText::Parameter set = parameter_of(value);
+    if (set.dimension != at->second.dimension)
+      value.fail(fmt::format("'{}' must be {}, not {}", name, describe(at->second.dimension),
+                             describe(set.dimension)));
+    at->second = set;
+  }
+}
+
+// The scene's own starts of the file's fields.
+void set_starts(const ConfigTable& rule, RuleText& text) {
+  const auto own = names_at(rule, "start");
+  if (!own) return;
+  for (const std::string& name : own->names()) {
+    const auto named = [&](std::vector<RuleText::Field>& fields) {
+      const auto at = std::ranges::find(fields, name, &RuleText::Field::name);
+      return at == fields.end() ? nullptr : &*at;
+    };
+    RuleText::Field* of = named(text.particle);
+    if (of == nullptr) of = named(text.bond);
+    if (of == nullptr) own->at(name).fail(fmt::format("the rule has no field '{}'", name));
+    of->start = formula_of(own->at(name));
+  }
+}
+
+RuleText text_of_file(const ConfigValue& file) {
+  const std::string path = file.file(), text = read_config_text(path);
+  return read_kind(FileKind::rule, text, path, [&](const ConfigTable& root) {
+    if (root.reduced() != file.reduced())
+      file.fail(fmt::format("the rule has units = \"{}\", and the scene has not",
+                            root.reduced() ? "reduced" : "SI"));
+    root.record_as("rule");
+    RuleText rule = rule_text(root);
+    root.done();
+    return rule;
+  });
+}
+
+RuleChoice chosen(const RuleText& text, const PackingChoice* packing) {
+  const auto rule = std::make_shared<const ProgramRule>(
+      understood(text, {.pitch = packing != nullptr ? packing->fcc.pitch : 0}));
+  return {rule->reach(), [rule](const ConfigTable& root, const Regions&, const Scene& scene) {
+            check_rounds_body(root, scene);
+            return rule;
+          }};
+}
+
+}  // namespace
+
+RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing) {
+  if (!rule.is_table()) return chosen(text_of_file(rule), packing);
+  const ConfigTable table = rule.table();
+  if (const auto file = table.find("file")) {
+    RuleText text = text_of_file(*file);
+    set_parameters(table, text);
+    set_starts(table, text);
+    table.done();
+    return chosen(text, packing);
+  }
+  const RuleText text = rule_text(table);
+  table.done();
+  return chosen(text, packing);
+}
+
+}  // namespace cuboct
