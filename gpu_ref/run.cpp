@@ -132,8 +132,11 @@ cuboct::Reading Runner::read(const Asked& asked) {
   probe(asked.ids);
   gpu::Reading read = engine_->read(asked.energies);
   if (asked.energies) largest_speed_ = std::max(largest_speed_, read.largest_speed);
-  cuboct::Reading reading{read.step, std::move(read.x), std::move(read.force), std::move(read.v),
-                          read.energies};
+  cuboct::Reading reading{.step = read.step,
+                          .x = std::move(read.x),
+                          .force = std::move(read.force),
+                          .v = std::move(read.v),
+                          .energies = read.energies};
   if (asked.volume > 0) reading.stress = Mat3::Identity() * (-read.virial / (3 * asked.volume));
   if (asked.watch) show(*asked.watch, read.energies);
   return reading;

@@ -28,7 +28,7 @@ struct Reading {
   // empty where not asked for.
   std::vector<Vec3> x, force, v;
   // [field of the rule][numbers of each particle, one after another]; empty where not asked for.
-  std::vector<std::vector<double>> fields;
+  std::vector<std::vector<double>> fields = {};
   Energies energies;
   Mat3 stress = Mat3::Zero();  // Pa, tension positive, without its kinetic part
 };

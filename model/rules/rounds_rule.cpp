@@ -11,10 +11,11 @@ namespace cuboct {
 namespace {
 
 [[noreturn]] void refuse(const RoundsRule& rule, const std::string& who) {
-  throw InputError(fmt::format("the rule '{}' has {} rounds, and {} knows the pair law alone",
-                               rule.declaration().name, rule.declaration().rounds.size(), who),
+  const size_t rounds = rule.declaration().rounds.size();
+  throw InputError(fmt::format("the rule '{}' has {} round{} of its own, and {} knows the pair law alone",
+                               rule.declaration().name, rounds, rounds == 1 ? "" : "s", who),
                    "the reference engine runs it")
-      .about({"rule.kind"});
+      .about({"rule.kind", "rule.file", "rule"});
 }
 
 class RoundsLaw final : public PairLaw {

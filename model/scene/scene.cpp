@@ -208,6 +208,20 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
   run.done();
 }
 
+// What a rule must say of itself where the motion between two load steps is left out.
+void check_static_rule(const ConfigTable& root, const Rule& rule) {
+  const RoundsRule* rounds = rounds_of(rule);
+  if (rounds == nullptr) return;
+  const RuleDeclaration& declaration = rounds->declaration();
+  const ConfigValue at = root.at("rule");
+  if (!declaration.moves) at.fail("static loading brings particles to rest, and the rule moves none");
+  if (!declaration.kept.empty())
+    at.fail(fmt::format("static loading leaves out time, and the rule's field '{}' goes on with it",
+                        declaration.kept.front()));
+  if (!(rounds->stiffness() > 0))
+    at.fail("static loading needs the stiffness of the rule", "stiffness = \"...\" in N/m, among its keys");
+}
+
 void read_reach(const ConfigTable& root, Scene& scene) {
   const auto table = root.table_at("reach");
   if (!table) return;
@@ -291,6 +305,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);
+  if (scene.loading) check_static_rule(root, scene.rule);
   read_reach(root, scene);
   for (Probe& probe : scene.probes)
     if (probe.kind == Probe::Kind::crack) probe.rule = std::make_shared<const Rule>(scene.rule);

@@ -187,6 +187,17 @@ TEST(Program, WhatCannotBeIsRefusedAtItsPlace) {
   has("particle.a.start = \"1 K\"\n" + round + "sum.force = \"1 N * d / r\"\n", "8:21",
       "the start of 'a' must be a plain number, not a temperature");
   has("rule = 3\n" + round + "sum.force = \"1 N * d / r\"\n", "8:1", "unknown key 'rule'");
+  const std::string pulled = "sum.force = \"1 N * d / r\"\n";
+  const auto still_run = [&](const std::string& rule) {
+    std::string text = bar("[rule]\nreach = \"1.2 * pitch\"\n" + rule);
+    return refusal(text.replace(text.find("steps = 10"), 10, "steps = 10, static = { load_steps = 2 }"));
+  };
+  EXPECT_NE(still_run(still + round + "sum.a = \"d\"\n").find("the rule moves none"), std::string::npos);
+  EXPECT_NE(still_run(round + pulled).find("needs the stiffness of the rule"), std::string::npos);
+  EXPECT_NE(still_run("particle.a.start = 1\n" + round + pulled + "finish.a = \"a + 1\"\n")
+                .find("the rule's field 'a' goes on with it"),
+            std::string::npos);
+  EXPECT_EQ(still_run("stiffness = \"1 mN/m\"\n" + round + pulled), "none");
   const std::string file = "[rule]\nfile = \"texts/heat.toml\"\n";
   const auto of_file = [&](const std::string& more, const std::string& what) {
     EXPECT_NE(refusal(bar(file + more)).find(what), std::string::npos) << refusal(bar(file + more));
