@@ -22,7 +22,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct BoardsOptions {
   Input input;
   std::string device, links, link = "ecp5-lvds", clock = "100 MHz", write;
   std::optional<uint64_t> nodes;  // of a device
@@ -32,7 +32,7 @@ struct Options {
   bool json = false;
 };
 
-BoardLinkKind link_of(const Options& options) {
+BoardLinkKind link_of(const BoardsOptions& options) {
   const std::vector<BoardLinkKind> kinds = board_links(options.links);
   const auto found = std::ranges::find(kinds, options.link, &BoardLinkKind::name);
   if (found != kinds.end()) return *found;
@@ -89,7 +89,7 @@ CountedPartition count(const Partition& p, const Plan& plan, const State& initia
 }
 
 // The box of --box, or what the search finds within the room.
-std::vector<Partition> ways_of(const Options& options, const BoardsFindings& found, const Plan& plan) {
+std::vector<Partition> ways_of(const BoardsOptions& options, const BoardsFindings& found, const Plan& plan) {
   if (!options.box.empty()) {
     const Cell box{options.box[0], options.box[1], options.box[2]};
     return {partition_of(plan, found.link, found.clock, box)};
@@ -106,7 +106,7 @@ std::vector<Partition> ways_of(const Options& options, const BoardsFindings& fou
   return ways;
 }
 
-void check(const Options& options) {
+void check(const BoardsOptions& options) {
   constexpr int32_t kMostSide = 1 << 20;  // of boards.nodes in an arch
   const int given = !options.device.empty() + options.nodes.has_value() + !options.box.empty();
   if (given != 1)
@@ -124,7 +124,7 @@ uint64_t nodes_of(const std::vector<int32_t>& box) {
   return nodes;
 }
 
-int boards(const Options& options) {
+int boards(const BoardsOptions& options) {
   catch_interrupts();
   check(options);
   if (options.steps == uint64_t{0}) throw InputError("--steps: no step, no cycles", "--steps 20");
@@ -173,7 +173,7 @@ const CountedPartition& BoardsFindings::fastest() const {
 }
 
 void add_boards(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BoardsOptions>();
   Command command = app.command("boards", "cuts a scene's machine into devices: pins, latency, exact cycles");
   options->input.add_to(command);
   command.option("--device", options->device, "FPGA to fill; a node is synthesised for it").type_name("NAME");

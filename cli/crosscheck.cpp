@@ -31,7 +31,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct CrosscheckOptions {
   Input input;
   std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
   EngineOptions choice;
@@ -42,7 +42,7 @@ struct Options {
 };
 
 // Whether numbers are to be compared instead of bits.
-bool of_real_numbers(const Options& options) {
+bool of_real_numbers(const CrosscheckOptions& options) {
   const auto count = [&](bool bits) {
     return std::ranges::count_if(options.engines, [bits](auto& engine) {
       const EngineRow* row = find_engine(engine);
@@ -58,7 +58,7 @@ bool of_real_numbers(const Options& options) {
 
 bool by_link(const Trace& trace) { return trace.stop && is_of_link(trace.stop->fault); }
 
-void check_engines(const Options& options) {
+void check_engines(const CrosscheckOptions& options) {
   for (const std::string& engine : options.engines) {
     if (const EngineRow* row = find_engine(engine); row && !row->bits)
       throw InputError(fmt::format("engine '{}' computes in doubles and has no bits to compare", engine),
@@ -76,7 +76,7 @@ void check_engines(const Options& options) {
 // The comparison of one run: it tells people as it goes, and keeps the same for scripts.
 class Comparison {
  public:
-  Comparison(const Options& options, const Loaded& loaded, const std::vector<Trace>& traces)
+  Comparison(const CrosscheckOptions& options, const Loaded& loaded, const std::vector<Trace>& traces)
       : options_(options), loaded_(loaded), traces_(traces) {}
 
   // The exit code.
@@ -91,7 +91,7 @@ class Comparison {
   void tell_engines();
   void tell_faults(size_t i);
 
-  const Options& options_;
+  const CrosscheckOptions& options_;
   const Loaded& loaded_;
   const std::vector<Trace>& traces_;
   Items items_;
@@ -216,7 +216,7 @@ struct Crossed {
 };
 
 // `leave`: a directory for the last state; empty: none is asked for.
-Crossed cross_once(const Options& options, const std::string& leave) {
+Crossed cross_once(const CrosscheckOptions& options, const std::string& leave) {
   const Loaded loaded = load_plan(options.input);
   check_held(loaded.scene, loaded.setup.plan);
   const Scratch scratch;
@@ -249,7 +249,8 @@ Crossed cross_once(const Options& options, const std::string& leave) {
 }
 
 // One stage after the other, each from the state in which all engines ended the one before it.
-int cross_stages(const Options& options, const std::vector<StageName>& names, const StageRange& range) {
+int cross_stages(const CrosscheckOptions& options, const std::vector<StageName>& names,
+                 const StageRange& range) {
   if (options.steps_given) throw InputError("--steps goes with --stage NAME: each stage has its own steps");
   for (size_t k = range.first; k < range.end; ++k)
     read_scene(options.input.scene, {.begins = true, .stage = names[k].name});
@@ -260,7 +261,7 @@ int cross_stages(const Options& options, const std::vector<StageName>& names, co
   for (size_t k = range.first; k < range.end && code == 0; ++k) {
     if (names[k].stage == ended) continue;
     const std::string title = stage_title(names, k);
-    Options one = options;
+    CrosscheckOptions one = options;
     one.input.stage = names[k].name;
     one.input.from = from;
     if (!options.out.empty()) one.out = options.out + "/" + title;
@@ -275,7 +276,7 @@ int cross_stages(const Options& options, const std::vector<StageName>& names, co
   return code;
 }
 
-int cross_real(Options options) {
+int cross_real(CrosscheckOptions options) {
   std::optional<DirectoryLock> lock;
   if (!options.out.empty()) {
     lock.emplace(options.out, "cuboct crosscheck");
@@ -288,14 +289,14 @@ int cross_real(Options options) {
                          options.answer);
 }
 
-int crosscheck(const Options& options) {
+int crosscheck(const CrosscheckOptions& options) {
   catch_interrupts();
   if (of_real_numbers(options)) return cross_real(options);
   check_engines(options);
   const std::vector<StageName> names = stages_of(options.input.scene);
   const StageRange range = stages_to_take(options.input.scene, names, options.input.stage);
   if (range.end - range.first > 1) return cross_stages(options, names, range);
-  Options one = options;
+  CrosscheckOptions one = options;
   if (names.size() == 1) one.input.stage = names[0].name;
   const Crossed crossed = cross_once(one, "");
   if (options.answer.json) options.answer.close(crossed.items);
@@ -305,7 +306,7 @@ int crosscheck(const Options& options) {
 }  // namespace
 
 void add_crosscheck(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CrosscheckOptions>();
   Command command = app.command("crosscheck", "run a scene in several engines and compare every bit");
   options->input.add_to(command);
   options->input.add_start_to(command);

@@ -20,18 +20,18 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct ElasticOptions {
   std::string scene, law, pitch, density, material, polar;
   bool reduced = false, relaxed = false, json = false;
   double strain = 1e-6;
   int layers = 0, threads = 1;
 };
 
-constexpr size_t kMostParticles = 100000;  // of which the force constants take some 2 GB
+constexpr size_t kMostForElastic = 100000;  // of which the force constants take some 2 GB
 constexpr int kMostLayers = 64;
 
 // The law alone as a scene; places in errors are those of this text.
-Scene scene_of_law(const Options& options) {
+Scene scene_of_law(const ElasticOptions& options) {
   const auto value = [&](const std::string& text) {
     return options.reduced || text == "relaxed" ? (text == "relaxed" ? "\"relaxed\"" : text)
                                                 : "\"" + text + "\"";
@@ -43,7 +43,7 @@ Scene scene_of_law(const Options& options) {
   return parse_scene(text + "[run]\nsteps = 0\n", "--law");
 }
 
-Scene scene_of(const Options& options) {
+Scene scene_of(const ElasticOptions& options) {
   if (options.scene.empty() == options.law.empty())
     throw InputError("either a scene or --law",
                      "cuboct elastic SCENE, or cuboct elastic --law 'kind = ...' --pitch P");
@@ -59,7 +59,7 @@ Scene scene_of(const Options& options) {
   return scene_of_law(options);
 }
 
-void check(const Options& options) {
+void check(const ElasticOptions& options) {
   if (!(options.strain >= 1e-8 && options.strain <= 1e-2))
     throw InputError(fmt::format("--strain: {:g} is not in [1e-8, 0.01]", options.strain));
   if (!options.polar.empty()) {
@@ -80,12 +80,12 @@ std::vector<Cleavage> cleavage_of(const Rule& rule, const CrystalCell& cell, con
   return out;
 }
 
-ElasticFindings findings_of(const Options& options, const Scene& scene) {
+ElasticFindings findings_of(const ElasticOptions& options, const Scene& scene) {
   ElasticFindings out;
   SceneCell start = cell_of(scene, options.material);
-  if (start.cell.x.size() > kMostParticles)
+  if (start.cell.x.size() > kMostForElastic)
     throw InputError(fmt::format("{} particles: 'cuboct elastic' solves for at most {}", start.cell.x.size(),
-                                 kMostParticles),
+                                 kMostForElastic),
                      "a smaller box of the same matter has the same constants");
   out.scene = scene.path;
   out.cell = start.of;
@@ -138,7 +138,7 @@ void draw(const ElasticFindings& found, const std::string& path) {
   write_text(path, gnuplot(sums + strained + "END\n", plot, path.substr(path.size() - 3), 620, 640));
 }
 
-int elastic(const Options& options) {
+int elastic(const ElasticOptions& options) {
   check(options);
   catch_interrupts();
   const Scene scene = scene_of(options);
@@ -157,7 +157,7 @@ int elastic(const Options& options) {
 }  // namespace
 
 void add_elastic(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ElasticOptions>();
   Command command = app.command("elastic", "elastic constants, by lattice sums and by strained simulation");
   command.option("scene", options->scene, "scene file (TOML)").type_name("SCENE");
   command.option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]")

@@ -45,7 +45,7 @@ Items say_emitted(const std::string& out, const Plan& plan, const std::optional<
 
 namespace {
 
-struct Options {
+struct EmitOptions {
   Input input;
   std::string out, fit;
   Emission emission{.vector_steps = 8};
@@ -53,7 +53,7 @@ struct Options {
   Answer answer;
 };
 
-Items emit_one(const Options& options) {
+Items emit_one(const EmitOptions& options) {
   const Loaded loaded = load(options.input);
   refuse_static(loaded.scene, "hardware");
   const Plan& plan = loaded.setup.plan;
@@ -72,14 +72,14 @@ Items emit_one(const Options& options) {
 }
 
 // A machine for each stage, in directories of their names. `from` of the input holds the runs of all.
-void emit_stages(const Options& options, const std::vector<StageName>& names, const StageRange& range) {
+void emit_stages(const EmitOptions& options, const std::vector<StageName>& names, const StageRange& range) {
   if (options.input.from.empty())
     throw InputError(
         "stages begin where the ones before them ended: --from DIR says where 'cuboct run' left them",
         "--stage NAME takes one");
-  std::vector<Options> all;
+  std::vector<EmitOptions> all;
   for (size_t k = range.first; k < range.end; ++k) {
-    Options& one = all.emplace_back(options);
+    EmitOptions& one = all.emplace_back(options);
     one.input.stage = names[k].name;
     one.input.from = k > 0 ? stage_start(options.input.from, names, k) : "";
     one.out = options.out + "/" + stage_title(names, k);
@@ -87,12 +87,12 @@ void emit_stages(const Options& options, const std::vector<StageName>& names, co
     check_emit_directory(one.out);
   }
   std::vector<std::string> told;
-  for (const Options& one : all)
+  for (const EmitOptions& one : all)
     told.push_back(json_object({{"name", json(one.input.stage)}, {"result", emit_one(one).json()}}));
   options.answer.close(json_object({{"stages", json_array(told)}}));
 }
 
-void emit(Options options) {
+void emit(EmitOptions options) {
   BoardChoice& board = options.emission.board;
   board.velocities = !options.fixed_velocities;
   if (!options.emission.prefix.empty()) check_prefix(options.emission.prefix);
@@ -119,7 +119,7 @@ void emit(Options options) {
 }  // namespace
 
 void add_emit(Command& app, int&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EmitOptions>();
   Command command = app.command("emit", "write the scene's machine as a self-contained RTL project");
   options->input.add_to(command);
   options->input.add_start_to(command);

@@ -21,7 +21,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct EnergyOptions {
   Input input;
   std::string beside, link, clock = "100 MHz";
   std::vector<std::string> technologies{"cmos45", "cmos7"};
@@ -29,7 +29,7 @@ struct Options {
   bool json = false;
 };
 
-EnergyMachine machine_of(const Options& options, const std::string& arch, double clock,
+EnergyMachine machine_of(const EnergyOptions& options, const std::string& arch, double clock,
                          const std::vector<Technology>& technologies) {
   Input input = options.input;
   input.arch = arch;
@@ -56,7 +56,7 @@ EnergyMachine machine_of(const Options& options, const std::string& arch, double
   return m;
 }
 
-int energy(const Options& options) {
+int energy(const EnergyOptions& options) {
   catch_interrupts();
   EnergyFindings found;
   found.scene = options.input.scene;
@@ -78,7 +78,7 @@ int energy(const Options& options) {
 }  // namespace
 
 void add_energy(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EnergyOptions>();
   Command command = app.command("energy", "joules, watts and area of a scene's machine, in bands");
   options->input.add_to(command);
   command.option("--beside", options->beside, "a second machine description, to compare with the first")

@@ -22,7 +22,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct ExploreOptions {
   std::string study, out, error, figure;
   std::vector<std::string> add;
   int jobs = 0;
@@ -73,7 +73,7 @@ void report(const study::Results& results, const std::string& out, const std::st
                             {"charts", json(charts)}}));
 }
 
-int explore_machines_of(const Options& options) {
+int explore_machines_of(const ExploreOptions& options) {
   if (!options.error.empty() || !options.add.empty() || options.no_speed)
     throw InputError("--error, --figure, --add and --no-speed are of studies of errors",
                      "a study of machines has constraints = [\"error <= 1%\"]");
@@ -84,7 +84,7 @@ int explore_machines_of(const Options& options) {
       options.answer);
 }
 
-int explore(const Options& options) {
+int explore(const ExploreOptions& options) {
   if (study::is_machine_study(options.study)) return explore_machines_of(options);
   if (options.best || options.confirm || !options.emit.empty())
     throw InputError("--best, --confirm and --emit are of studies of machines",
@@ -122,7 +122,7 @@ int explore(const Options& options) {
 }  // namespace
 
 void add_explore(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExploreOptions>();
   Command command = app.command("explore", "chart a study's settings or machines: errors, speed, energy");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command

@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Options {
+struct FitOptions {
   std::string study, out;
   int jobs = 0;
   Answer answer;
@@ -152,7 +152,7 @@ bool is_bond_study(const std::string& path) {
   return fit && fit->is_table();
 }
 
-int fit_study(const Options& options) {
+int fit_study(const FitOptions& options) {
   const Clock::time_point begin = Clock::now();
   catch_interrupts();
   const fit::FitStudy study = fit::read_fit(options.study);
@@ -190,7 +190,7 @@ int fit_study(const Options& options) {
 }  // namespace
 
 void add_fit(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FitOptions>();
   Command command = app.command("fit", "find the force law of a curve, or the potential of a crystal");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command.option("--out", options->out, "directory for results; default: that of the study's name with .fit")

@@ -28,7 +28,7 @@ using learn::KernelFit;
 using learn::Learned;
 using learn::Tried;
 
-struct Options {
+struct LearnOptions {
   std::string study, out;
   int jobs = 0;
   Answer answer;
@@ -102,7 +102,7 @@ void draw(const Learned& found, const std::string& directory) {
                      "svg", 640, 400));
 }
 
-void run(const Options& options) {
+void run(const LearnOptions& options) {
   const learn::LearnStudy study = learn::read_learn_study(options.study);
   const std::string out =
       options.out.empty() ? std::filesystem::path(options.study).stem().string() + ".learn" : options.out;
@@ -135,7 +135,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_learn(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<LearnOptions>();
   Command command = app.command("learn", "learn a linear peridynamic solid from a sheet of atoms");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command

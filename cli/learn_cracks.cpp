@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/atom_units.h"
 #include "model/base/output.h"
 #include "model/trace/plot.h"
 #include "study/learn/spread.h"
@@ -84,7 +85,7 @@ void write_crack_tables(const LearnStudy& study, const Cracks& cracks, const std
 
 namespace {
 
-constexpr const char* kStyle = "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\n";
+constexpr const char* kChartStyle = "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\n";
 
 void draw_stretch(const Cracks& cracks, const std::string& directory) {
   std::string rows;
@@ -97,7 +98,7 @@ void draw_stretch(const Cracks& cracks, const std::string& directory) {
                                  "plot $tried using 1:2 with linespoints pt 7 ps 0.5 lw 2 lc rgb '#1f5fa8' "
                                  "title 'displacement', $tried using 1:3 with linespoints pt 7 ps 0.5 lw 2 "
                                  "lc rgb '#b03020' title 'damage'\n",
-                                 kStyle, cracks.model.stretch.stretch, cracks.model.stretch.stretch),
+                                 kChartStyle, cracks.model.stretch.stretch, cracks.model.stretch.stretch),
                      "svg", 640, 400));
 }
 
@@ -128,21 +129,22 @@ void draw_cost(const LearnStudy& study, const Cracks& cracks, const std::string&
   const double low = least / 1.5, high = most * 2, watts = study.prediction.watts;
   write_text(
       directory + "/cost.svg",
-      gnuplot(data,
-              fmt::format("{}set border 7\nset logscale xx2\nset xrange [{:.4g}:{:.4g}]\nset x2range "
-                          "[{:.4g}:{:.4g}]\nset x2tics\nset yrange [0:*]\nset key left bottom\nset xlabel "
-                          "'core seconds'\nset x2label 'J, at {:g} W a core'\nset ylabel 'error of "
-                          "displacement, %'\nset arrow 1 from {:.4g},graph 0 to {:.4g},graph 1 nohead dt 2\n"
-                          "set label 1 'atoms' at {:.4g},graph 0.9 right offset -1,0\nplot {}\n",
-                          kStyle, low, high, low * watts, high * watts, watts, atoms, atoms, atoms, plots),
-              "svg", 720, 460));
+      gnuplot(
+          data,
+          fmt::format("{}set border 7\nset logscale xx2\nset xrange [{:.4g}:{:.4g}]\nset x2range "
+                      "[{:.4g}:{:.4g}]\nset x2tics\nset yrange [0:*]\nset key left bottom\nset xlabel "
+                      "'core seconds'\nset x2label 'J, at {:g} W a core'\nset ylabel 'error of "
+                      "displacement, %'\nset arrow 1 from {:.4g},graph 0 to {:.4g},graph 1 nohead dt 2\n"
+                      "set label 1 'atoms' at {:.4g},graph 0.9 right offset -1,0\nplot {}\n",
+                      kChartStyle, low, high, low * watts, high * watts, watts, atoms, atoms, atoms, plots),
+          "svg", 720, 460));
 }
 
 std::string block(const std::string& name, const learn::Grid& grid, const CrackState& state) {
   std::string out = fmt::format("${} << END\n", name);
   for (size_t i = 0; i < grid.size(); ++i) {
-    const Vec3 at = (grid.at(i) + state.u[i]) / learn::kAngstrom;
-    out += fmt::format("{:.4g} {:.4g} {:.4g} {:.4g}\n", at[0], at[1], state.u[i][0] / learn::kAngstrom,
+    const Vec3 at = (grid.at(i) + state.u[i]) / kAngstrom;
+    out += fmt::format("{:.4g} {:.4g} {:.4g} {:.4g}\n", at[0], at[1], state.u[i][0] / kAngstrom,
                        state.damage[i]);
   }
   return out + "END\n";
@@ -157,7 +159,7 @@ void draw_test(const Cracks& cracks, size_t test, const std::string& path) {
   for (const learn::AtomFrame& frame : atoms) {
     data += fmt::format("$atoms{} << END\n", frame.frame);
     for (size_t i = 0; i < frame.x.size(); ++i) {
-      const Vec3 at = (frame.x[i] + frame.u[i]) / learn::kAngstrom;
+      const Vec3 at = (frame.x[i] + frame.u[i]) / kAngstrom;
       data += fmt::format("{:.4g} {:.4g}\n", at[0], at[1]);
     }
     data += "END\n";
@@ -166,8 +168,8 @@ void draw_test(const Cracks& cracks, size_t test, const std::string& path) {
     data += block(fmt::format("predicted{}", k), cracks.grids[grid], cracks.predicted[test][k]);
     for (size_t i = 0; i < cracks.seen[test][k].u.size(); ++i) {
       const double x = cracks.grids[grid].at(i)[0] + cracks.seen[test][k].u[i][0];
-      wide = std::max(wide, std::abs(x) / learn::kAngstrom);
-      most = std::max(most, std::abs(cracks.seen[test][k].u[i][0]) / learn::kAngstrom);
+      wide = std::max(wide, std::abs(x) / kAngstrom);
+      most = std::max(most, std::abs(cracks.seen[test][k].u[i][0]) / kAngstrom);
     }
   }
   wide = 10 * std::ceil(wide / 10 + 0.5);

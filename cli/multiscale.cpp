@@ -24,7 +24,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct MultiscaleOptions {
   std::string study, out;
   bool gpu = false;
   int threads = 0, fraction = SampleNodeOptions().fraction;
@@ -35,7 +35,7 @@ struct Options {
 
 // `point`: of [compare], from 1; 0: the study itself.
 std::vector<SetOutcome> run(const ElementStudy& study, const std::shared_ptr<const SampleMaterial>& material,
-                            const Options& options, const std::string& progress, size_t point = 0,
+                            const MultiscaleOptions& options, const std::string& progress, size_t point = 0,
                             const std::string& before = {}) {
   if (options.gpu) run_on_gpu({options.study, progress, before, point, options.threads});
   ElementRunOptions how;
@@ -64,7 +64,7 @@ void draw(const std::function<void()>& how) {
 }
 
 void run_study(const ElementStudy& study, const std::shared_ptr<const SampleMaterial>& material,
-               const Options& options, const std::string& out) {
+               const MultiscaleOptions& options, const std::string& out) {
   std::optional<NodeFindings> node;
   if (!options.technologies.empty())
     node = node_of(study, *material, options.fraction, options.clock, options.technologies);
@@ -78,7 +78,7 @@ void run_study(const ElementStudy& study, const std::shared_ptr<const SampleMate
 }
 
 // Each point of the grid with the study's own file, and a file of progress of its own.
-void run_comparison(const ElementStudy& study, const Options& options, const std::string& out) {
+void run_comparison(const ElementStudy& study, const MultiscaleOptions& options, const std::string& out) {
   std::map<std::pair<int, double>, std::shared_ptr<const SampleMaterial>> materials;
   const auto point_of = [&](const ElementEffort& effort, size_t point, const std::string& before) {
     const ElementStudy one = read_element_study(options.study, effort);
@@ -102,7 +102,7 @@ void run_comparison(const ElementStudy& study, const Options& options, const std
   draw([&] { draw_comparison(compared, out); });
 }
 
-void multiscale(const Options& options) {
+void multiscale(const MultiscaleOptions& options) {
   const ElementStudy study = read_element_study(options.study);
   const std::string out = options.out.empty()
                               ? std::filesystem::path(options.study).stem().string() + ".multiscale"
@@ -124,7 +124,7 @@ void multiscale(const Options& options) {
 }  // namespace
 
 void add_multiscale(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MultiscaleOptions>();
   Command command = app.command("multiscale", "stretch or strike a body whose elements carry their atoms");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command

@@ -24,7 +24,7 @@ constexpr std::array<FigureName, 3> kFigures{{{"modulus", "GPa", "Young''s modul
                                               {"Poisson ratio", "", "Poisson''s ratio", 1},
                                               {"wave speed", "m/s", "wave speed", 1}}};
 constexpr std::array<double, 3> kLimits{0.01, 1e-3, 1e-4};
-constexpr double kLeast = 1e-7;  // of an error on the chart: less is drawn there
+constexpr double kLeastDrawn = 1e-7;  // of an error on the chart: less is drawn there
 
 std::string settings_of(const ComparedPoint& point) {
   return fmt::format("{} elements, samples of {} atoms, strain tolerance {:g}, force {:g} eV/angstrom",
@@ -136,7 +136,7 @@ std::string data_of(const Comparison& compared, const std::vector<Curve>& curves
     for (const ComparedPoint* p : curves[c].points) {
       data += fmt::format("{} {:.6g}", std::max<uint64_t>(p->atom_steps, 1), std::max(p->processor, 1e-4));
       for (size_t k = 0; k < kFigures.size(); ++k)
-        data += fmt::format(" {:.6g}", std::max(std::abs(compared.error(*p, k).value_or(0)), kLeast));
+        data += fmt::format(" {:.6g}", std::max(std::abs(compared.error(*p, k).value_or(0)), kLeastDrawn));
       data += "\n";
     }
     data += "END\n";
@@ -212,7 +212,7 @@ void draw_comparison(const Comparison& compared, const std::string& directory) {
       "xy '%.0e'\nset yrange [{:g}:*]\nset lmargin 11\nset rmargin 2\nset tmargin 1\nunset key\n"
       "set label 1 'hollow: a looser force; along a line the strain tolerance falls; drawn at {:.0e}: less' "
       "at screen 0.5,{:.4f} center font ',10'\nset multiplot\n",
-      0.7 * kLeast, kLeast, 12 / height);
+      0.7 * kLeastDrawn, kLeastDrawn, 12 / height);
   for (size_t k = 0; k < there.size(); ++k)
     for (const bool steps : {true, false}) {
       plot += fmt::format("set size 0.5,{:.4f}\nset origin {},{:.4f}\n", kPanel / height, steps ? 0 : 0.5,

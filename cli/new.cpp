@@ -33,7 +33,7 @@ const std::vector<Template>& templates() {
   return all;
 }
 
-struct Options {
+struct NewOptions {
   std::string name, like = "tension";
   bool list = false, force = false;
   Answer answer;
@@ -49,7 +49,7 @@ const Template& template_of(const std::string& like) {
                    near.empty() ? "one of " + list_of(names) : near);
 }
 
-void make(const Options& options) {
+void make(const NewOptions& options) {
   const Answer& answer = options.answer;
   if (options.list) {
     std::vector<Items> all;
@@ -82,7 +82,7 @@ void make(const Options& options) {
 const std::string& template_text(const std::string& name) { return template_of(name).text; }
 
 void add_new(Command& app, int&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NewOptions>();
   Command command = app.command("new", "write a commented scene to start from");
   command.option("name", options->name, "the file, NAME.toml").type_name("NAME");
   command.option("--like", options->like, "what it shows: see --list").show_default().type_name("TEMPLATE");

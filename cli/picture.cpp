@@ -21,7 +21,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct PictureOptions {
   std::string directory, out, field = "strain";
   std::vector<uint64_t> steps;
   double limit = 0;
@@ -53,7 +53,7 @@ std::string above_zero(const std::string& text) {
   return fine ? std::string() : fmt::format("'{}' is not a number above 0", text);
 }
 
-void draw(const Options& options) {
+void draw(const PictureOptions& options) {
   const Field field = field_of(options.field);
   const std::string out = options.out.empty() ? options.directory + "/picture.png" : options.out;
   const std::string path = options.directory + "/rasters.h5";
@@ -75,7 +75,7 @@ void draw(const Options& options) {
 }  // namespace
 
 void add_picture(Command& app, int&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PictureOptions>();
   Command command = app.command("picture", "draw the frames of a run's directory, of bodies of any size");
   command.option("directory", options->directory, "what 'cuboct run --out' wrote")
       .required()

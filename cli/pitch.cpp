@@ -24,7 +24,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct PitchOptions {
   std::string scene, arch, out, figure, curve;
   std::string engine = "lattice";
   std::string error = "5%";
@@ -34,7 +34,7 @@ struct Options {
 };
 
 // As a study file has figures; without --curve the modulus of the scene's one stress-strain probe.
-Figure figure_of(const Options& options, const Scene& scene) {
+Figure figure_of(const PitchOptions& options, const Scene& scene) {
   std::string curve = options.curve, kind = options.figure.empty() ? "modulus" : options.figure;
   if (curve.empty()) {
     for (const Probe& probe : scene.probes) {
@@ -65,7 +65,7 @@ std::string length_text(double length, bool reduced) {
   return reduced ? fmt::format("{:.4g}", length) : quantity_text(length, "m");
 }
 
-std::string percent(double share) { return fmt::format("{:.2g} %", 100 * share); }
+std::string rough_percent(double share) { return fmt::format("{:.2g} %", 100 * share); }
 
 void draw(const study::PitchAnswer& answer, const Figure& figure, const std::string& path) {
   const study::PitchLine& line = *answer.line;
@@ -104,7 +104,7 @@ std::string json_of(const study::PitchAnswer& answer, const Figure& figure, cons
                       {"directory", json(out)}});
 }
 
-int find(const Options& options) {
+int find(const PitchOptions& options) {
   catch_interrupts();
   study::PitchQuestion question;
   question.base = study::read_base(options.scene, options.arch);
@@ -138,7 +138,7 @@ int find(const Options& options) {
                  runs.back().particles,
                  fmt::format("{} to {}", quantity_text(low, runs.back().unit),
                              quantity_text(high, runs.back().unit)),
-                 so_far.line ? percent(so_far.line->error_at(runs.back().pitch)) : "-", seconds);
+                 so_far.line ? rough_percent(so_far.line->error_at(runs.back().pitch)) : "-", seconds);
       std::fflush(stdout);
     });
   } catch (const study::Interrupted&) {
@@ -147,7 +147,7 @@ int find(const Options& options) {
   if (found.line) {
     const std::string& unit = found.runs.back().unit;
     answer.say("limit       {}, known within {}\n", quantity_text(found.line->limit, unit),
-               percent(found.line->limit_within / std::abs(found.line->limit)));
+               rough_percent(found.line->limit_within / std::abs(found.line->limit)));
   }
   if (found.pitch) {
     const study::PitchRun& last = found.runs.back();
@@ -155,7 +155,7 @@ int find(const Options& options) {
     answer.say("pitch = {}   # within {}; about {} particles\n",
                reduced ? fmt::format("{:.4g}", *found.pitch)
                        : fmt::format("\"{}\"", quantity_text(*found.pitch, "m")),
-               percent(question.error),
+               rough_percent(question.error),
                count_text(static_cast<double>(last.particles) * times * times * times));
   }
   answer.close(json_of(found, question.figure, out));
@@ -168,7 +168,7 @@ int find(const Options& options) {
   }
   if (!found.pitch)
     throw Failed(
-        fmt::format("no pitch of at most {} particles keeps {}", options.most, percent(question.error)),
+        fmt::format("no pitch of at most {} particles keeps {}", options.most, rough_percent(question.error)),
         "--particles N, --error E, or another figure");
   return 0;
 }
@@ -176,7 +176,7 @@ int find(const Options& options) {
 }  // namespace
 
 void add_pitch(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PitchOptions>();
   Command command = app.command("pitch", "find the pitch that keeps a figure within an error");
   command.option("scene", options->scene, "scene file (TOML)").required().type_name("SCENE");
   command.option("--error", options->error, "wanted, of the figure, as 5% or 0.05")

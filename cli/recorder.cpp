@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Besides what the trace holds: summary, record, the head of each file.
-constexpr uint64_t kLeast = 1 << 19;
+constexpr uint64_t kBesideTrace = 1 << 19;
 constexpr uint64_t kMost =
     1 << 28;  // a run of so many steps that its hashes take more may well be ended early
 
@@ -98,7 +98,7 @@ struct Recorder::Impl {
       fs::remove(path(name));
     remove_vtk(path("frames"));
     write_text(path(kBallast), "");
-    const uint64_t bytes = std::min(options.rest, kMost) + kLeast;
+    const uint64_t bytes = std::min(options.rest, kMost) + kBesideTrace;
     if (const int error = reserve(path(kBallast), 0, bytes)) {
       fs::remove(path(kBallast));
       throw InputError(fmt::format("cannot write into {}: {}", options.directory, std::strerror(error)),

@@ -314,7 +314,7 @@ Items facts_of(const Loaded& loaded, const Trace& trace) {
   return items;
 }
 
-constexpr char kStyle[] =
+constexpr char kPageStyle[] =
     "body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:1100px;margin:2.5rem "
     "auto;padding:0 "
     "1rem}"
@@ -336,7 +336,7 @@ std::string page_head(const std::string& title, int refresh) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{1}</title>\n<style>{2}</style>\n</head>\n<body>\n<h1>{1}</h1>\n",
       refresh > 0 ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", refresh) : "",
-      html_text(title), kStyle);
+      html_text(title), kPageStyle);
 }
 
 std::string page_picture(const std::string& png) {

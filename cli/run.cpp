@@ -27,7 +27,7 @@
 namespace cuboct {
 namespace {
 
-struct Options {
+struct RunOptions {
   Input input;
   std::string engine;  // empty: lattice, or the one that relaxes where the scene's loading is static
   EngineOptions engines;
@@ -67,12 +67,12 @@ struct Options {
   }
 };
 
-bool counts_cycles(const Options& options) {
+bool counts_cycles(const RunOptions& options) {
   return engine_row(options.engine).cycles || options.engines.cycles;
 }
 
 // Bytes of a trace besides its frames, at most.
-uint64_t rest_of(const Options& options, const Loaded& loaded, uint64_t steps, uint64_t samples) {
+uint64_t rest_of(const RunOptions& options, const Loaded& loaded, uint64_t steps, uint64_t samples) {
   const uint64_t every = hashes_every(options.engine, options.engines);
   const uint64_t hashes = every > 0 ? steps / every + 2 : 0;
   const uint64_t spans = counts_cycles(options) ? steps * loaded.setup.plan.nodes() * kPhases : 0;
@@ -81,7 +81,7 @@ uint64_t rest_of(const Options& options, const Loaded& loaded, uint64_t steps, u
 }
 
 // Before the first step: what this machine cannot hold.
-void check_size(const Options& options, const Loaded& loaded, uint64_t steps, uint64_t frame_every) {
+void check_size(const RunOptions& options, const Loaded& loaded, uint64_t steps, uint64_t frame_every) {
   const EngineOptions& engines = options.engines;
   check_workers(engines.threads, engines.ranks, loaded.setup.plan);
   if (options.anyway) return;
@@ -101,7 +101,7 @@ void check_size(const Options& options, const Loaded& loaded, uint64_t steps, ui
 
 // What --verbose says: where the engine runs, what it computes, and why what the arch file leaves to cuboct
 // is as it is.
-std::string plan_text(const Options& options, const Plan& plan) {
+std::string plan_text(const RunOptions& options, const Plan& plan) {
   const EngineRow& row = engine_row(options.engine);
   const std::string program = options.engines.ranks > 1 ? row.ranks : row.program;
   std::string text = fmt::format("  {:<22} {}, {}\n", "engine", row.name,
@@ -125,7 +125,7 @@ struct Ended {
 };
 
 // With the engine that the scene asks for, where the command line names none.
-Options for_scene(Options options, const Scene& scene) {
+RunOptions for_scene(RunOptions options, const Scene& scene) {
   if (options.engine.empty()) options.engine = engine_for(scene);
   options.engines.check({options.engine}, options.input);
   options.steps = whole_steps(scene, options.steps);
@@ -134,9 +134,9 @@ Options for_scene(Options options, const Scene& scene) {
   return options;
 }
 
-Ended run_once(const Options& given) {
+Ended run_once(const RunOptions& given) {
   const Loaded loaded = load_any(given.input, given.engine);
-  const Options options = for_scene(given, loaded.scene);
+  const RunOptions options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();
   const Scene& scene = loaded.scene;
@@ -217,7 +217,7 @@ Ended run_once(const Options& given) {
   return {trace.stop || !trace.findings.empty() || unfinished ? 1 : 0, !trace.stop && !unfinished};
 }
 
-int run(Options options) {
+int run(RunOptions options) {
   if (!options.engine.empty()) options.engines.check({engine_row(options.engine).name}, options.input);
   options.check_kept();
   static_cast<void>(options.formats());
@@ -235,7 +235,7 @@ int run(Options options) {
       options.engines.resume, options.force, options.answer.json};
   bool opens = true;  // one page is enough
   return run_stages(request, [&](const StageDirectory& stage) {
-    Options one = options;
+    RunOptions one = options;
     one.in_stages = true;
     one.opens = std::exchange(opens, false);
     one.input.stage = stage.name;
@@ -251,7 +251,7 @@ int run(Options options) {
 }  // namespace
 
 void add_run(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   Command command = app.command("run", "run a scene and end with a summary");
   options->input.add_to(command);
   options->input.add_start_to(command);

@@ -31,7 +31,7 @@ using study::Arithmetic;
 using study::Method;
 using study::Subject;
 
-struct Options {
+struct StabilityOptions {
   Input input;
   Answer answer;
   std::string maps;
@@ -42,7 +42,7 @@ struct Options {
 };
 
 // The matrix of a million particles takes 3 GB.
-constexpr size_t kMostParticles = 1000000;
+constexpr size_t kMostForStability = 1000000;
 
 struct Engine {
   const char *name, *key;
@@ -77,7 +77,7 @@ class Status {
   bool shown_ = false;
 };
 
-int axis_of(const Options& options, const Scene& scene) {
+int axis_of(const StabilityOptions& options, const Scene& scene) {
   return options.axis.empty() ? strain_axis(scene) : options.axis[0] - 'x';
 }
 
@@ -167,7 +167,7 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows, const std:
   return out + fmt::format("\n], \"maps\": {}}}", json(maps));
 }
 
-void check(const Options& options) {
+void check(const StabilityOptions& options) {
   if (!(options.strain >= 0 && options.strain <= 0.5))
     throw InputError(
         fmt::format("--strain: {:g} is not in [0, 0.5]: the part of its length that the body is "
@@ -179,10 +179,10 @@ void check(const Options& options) {
     throw InputError(fmt::format("--axis: '{}' is not x, y or z", options.axis));
 }
 
-void measure(const Options& options, const Scene& scene, const Arch& arch) {
-  if (scene.body.size() > kMostParticles)
+void measure(const StabilityOptions& options, const Scene& scene, const Arch& arch) {
+  if (scene.body.size() > kMostForStability)
     throw InputError(fmt::format("{} particles: 'cuboct stability' builds the matrix of at most {}",
-                                 scene.body.size(), kMostParticles),
+                                 scene.body.size(), kMostForStability),
                      "a smaller piece of the same body has the same limit");
   std::optional<DirectoryLock> lock;
   if (!options.maps.empty()) {
@@ -243,7 +243,7 @@ void measure(const Options& options, const Scene& scene, const Arch& arch) {
   print();
 }
 
-void stability(const Options& options) {
+void stability(const StabilityOptions& options) {
   check(options);
   const Scene scene = read_scene(options.input.scene);
   const Arch arch = read_arch(options.input.arch);
@@ -253,7 +253,7 @@ void stability(const Options& options) {
 }  // namespace
 
 void add_stability(Command& app, int&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StabilityOptions>();
   Command command = app.command("stability", "measure the largest stable time step, beside what theory says");
   options->input.add_to(command);
   options->answer.add_to(command);

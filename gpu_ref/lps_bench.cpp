@@ -22,7 +22,7 @@
 namespace cuboct::gpu {
 namespace {
 
-struct Request {
+struct LpsRequest {
   std::string scene, precision = "both", points;
   uint64_t steps = 0, compared = 10;
   std::optional<uint64_t> from;
@@ -38,7 +38,7 @@ struct Case {
   std::unique_ptr<RealEngine> reference;
   int threads;
 
-  Case(const Request& request) : scene(read_scene(request.scene)) {
+  Case(const LpsRequest& request) : scene(read_scene(request.scene)) {
     if (rounds_of(scene.rule) == nullptr)
       throw InputError(fmt::format("{}: its rule has pairs alone", request.scene),
                        "cuboct-gpu lps runs scenes with [rule] kind = \"lps\"");
@@ -52,7 +52,7 @@ struct Case {
   double bonds() const { return static_cast<double>(terms().bonds()); }
 };
 
-void line(const std::string& name, double value, const char* unit) {
+void print_lps(const std::string& name, double value, const char* unit) {
   fmt::print("lps.{} {:.6g} {}\n", name, value, unit);
   std::fflush(stdout);
 }
@@ -87,7 +87,7 @@ void write_points(const std::string& path, const Case& of, LpsDevice& device) {
 }
 
 // Whole runs from the start, each `steps` long. False: an interrupt came.
-bool time_runs(const Request& request, const std::string& name, const Case& of, LpsDevice& device,
+bool time_runs(const LpsRequest& request, const std::string& name, const Case& of, LpsDevice& device,
                const Device& at, uint64_t steps) {
   PowerMeter power({at.bus});
   EnergyMeter meter(power, request.times);
@@ -105,16 +105,16 @@ bool time_runs(const Request& request, const std::string& name, const Case& of, 
   while (!request.no_energy && power.works() && !meter.enough() && !interrupted()) run();
   if (interrupted()) return false;
   const double updates = of.bonds() * static_cast<double>(steps);
-  line(name + ".bond_updates_per_second", updates / median(seconds), "1/s");
-  line(name + ".slowest_repeat", updates / *std::max_element(seconds.begin(), seconds.end()), "1/s");
-  line(name + ".steps_per_second", static_cast<double>(steps) / median(seconds), "1/s");
-  line(name + ".run", median(seconds), "s");
+  print_lps(name + ".bond_updates_per_second", updates / median(seconds), "1/s");
+  print_lps(name + ".slowest_repeat", updates / *std::max_element(seconds.begin(), seconds.end()), "1/s");
+  print_lps(name + ".steps_per_second", static_cast<double>(steps) / median(seconds), "1/s");
+  print_lps(name + ".run", median(seconds), "s");
   std::string why;
   if (const auto energy = request.no_energy ? std::nullopt : meter.finish(&why)) {
     const double per_step = energy->joules() / static_cast<double>(energy->steps);
-    line(name + ".joules_per_bond_update", per_step / of.bonds(), "J");
-    line(name + ".energy_of_run", per_step * static_cast<double>(steps), "J");
-    line(name + ".power", energy->power.watts, "W");
+    print_lps(name + ".joules_per_bond_update", per_step / of.bonds(), "J");
+    print_lps(name + ".energy_of_run", per_step * static_cast<double>(steps), "J");
+    print_lps(name + ".power", energy->power.watts, "W");
   } else if (!request.no_energy) {
     fmt::print("# no energy: {}\n", why);
   }
@@ -122,7 +122,7 @@ bool time_runs(const Request& request, const std::string& name, const Case& of, 
 }
 
 // A run with looks at its cracks, and, where it is asked for, beside the reference from some step on.
-void follow(const Request& request, const std::string& name, Case& of, LpsDevice& device, uint64_t steps) {
+void follow(const LpsRequest& request, const std::string& name, Case& of, LpsDevice& device, uint64_t steps) {
   const uint64_t from = std::min(request.from.value_or(steps / 2), steps);
   device.start();
   device.advance(from);
@@ -131,12 +131,12 @@ void follow(const Request& request, const std::string& name, Case& of, LpsDevice
     const LpsErrors off = lps_errors(device, *of.reference, of.scene.packing(), request.compared, &seconds);
     fmt::print("# beside the reference in doubles, {} threads, steps {} to {}\n", of.threads, from,
                from + request.compared);
-    line(name + ".displacement_error", off.displacement, "1");
-    line(name + ".velocity_error", off.velocity, "1");
-    line(name + ".dilatation_error", off.dilatation, "1");
-    line(name + ".damage_error", off.damage, "1");
-    line("reference.bond_updates_per_second", of.bonds() * static_cast<double>(request.compared) / seconds,
-         "1/s");
+    print_lps(name + ".displacement_error", off.displacement, "1");
+    print_lps(name + ".velocity_error", off.velocity, "1");
+    print_lps(name + ".dilatation_error", off.dilatation, "1");
+    print_lps(name + ".damage_error", off.damage, "1");
+    print_lps("reference.bond_updates_per_second",
+              of.bonds() * static_cast<double>(request.compared) / seconds, "1/s");
   }
   device.start();
   for (int row = 1; row <= request.rows && !interrupted(); ++row) {
@@ -146,7 +146,7 @@ void follow(const Request& request, const std::string& name, Case& of, LpsDevice
   }
 }
 
-int run(const Request& request) {
+int run(const LpsRequest& request) {
   const Device at = device_at(request.device);
   Case of(request);
   const uint64_t steps = request.steps > 0 ? request.steps : of.scene.steps;
@@ -167,7 +167,7 @@ int run(const Request& request) {
   return 0;
 }
 
-void add_options(Command& app, Request& request) {
+void add_options(Command& app, LpsRequest& request) {
   app.option("SCENE", request.scene, "A scene with [rule] kind = \"lps\"").required();
   app.option("--precision", request.precision, "float, double or both")
       .one_of({"float", "double", "both"})
@@ -190,7 +190,7 @@ void add_options(Command& app, Request& request) {
 }  // namespace
 
 int run_lps_bench(int argc, char** argv) {
-  Request request;
+  LpsRequest request;
   Command app("cuboct-gpu lps", "Runs a linear peridynamic solid on a GPU, and measures it");
   add_options(app, request);
   return run_command_line(app, argc, argv, [&] { return run(request); });

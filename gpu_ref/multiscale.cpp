@@ -18,12 +18,12 @@
 namespace cuboct::gpu {
 namespace {
 
-struct Request {
+struct StudyRequest {
   std::string study, progress, before, error;
   int device = 0, threads = 0, point = 0;
 };
 
-ElementStudy study_of(const Request& request) {
+ElementStudy study_of(const StudyRequest& request) {
   ElementStudy study = read_element_study(request.study);
   if (request.point > 0) {
     const std::vector<ElementEffort> efforts =
@@ -57,7 +57,7 @@ class Timed final : public SampleRelaxer {
   double* seconds_;
 };
 
-int run(const Request& request) {
+int run(const StudyRequest& request) {
   const ElementStudy study = study_of(request);
   const Device device = device_at(request.device);
   const std::shared_ptr<const SampleMaterial> material = material_of(study);
@@ -93,7 +93,7 @@ int run(const Request& request) {
 }
 
 // Errors reach the command that started us by a file, where it names one.
-int run_and_tell(const Request& request) {
+int run_and_tell(const StudyRequest& request) {
   try {
     return run(request);
   } catch (const ElementRunStopped&) {
@@ -113,7 +113,7 @@ int run_and_tell(const Request& request) {
 }  // namespace
 
 int run_multiscale(int argc, char** argv) {
-  Request request;
+  StudyRequest request;
   Command app(
       "cuboct-gpu multiscale",
       "Computes a study of elements that carry their atoms, with the samples on a GPU; cuboct multiscale "

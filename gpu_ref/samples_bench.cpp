@@ -19,7 +19,7 @@
 namespace cuboct::gpu {
 namespace {
 
-struct Request {
+struct SamplesRequest {
   std::string set = "si_erhart_albe", precision = "float";
   int cubes = 2, samples = 4224, device = 0, repeats = 5;
   double seconds = 0.3, tolerance = 1e-3;
@@ -35,7 +35,7 @@ constexpr double kStrain = 0.01;   // that of each component of a sample's strai
 constexpr double kEdges[] = {5.43, 3.57};  // angstrom, of the cubes of silicon and diamond
 
 // Each strained and shaken in its own way.
-std::vector<AtomCell> samples_of(const Request& request) {
+std::vector<AtomCell> samples_of(const SamplesRequest& request) {
   const bool carbon = request.set.front() == 'c';
   const AtomCell perfect = diamond_block(kEdges[carbon], request.cubes, request.cubes, request.cubes);
   std::vector<AtomCell> samples;
@@ -99,12 +99,12 @@ uint32_t steps_for(Samples& samples, double seconds) {
   }
 }
 
-void line(const char* name, double value, const char* unit) {
+void print_samples(const char* name, double value, const char* unit) {
   fmt::print("samples.{} {:.6g} {}\n", name, value, unit);
   std::fflush(stdout);
 }
 
-int run(const Request& request) {
+int run(const SamplesRequest& request) {
   const Tersoff tersoff = tersoff_set(request.set);
   const Device device = device_at(request.device);
   const std::vector<AtomCell> cells = samples_of(request);
@@ -133,18 +133,18 @@ int run(const Request& request) {
   }
   if (interrupted()) return 1;
   const double work = static_cast<double>(atoms) * steps;
-  line("atom_steps_per_second", work / median(seconds), "1/s");
-  line("slowest_repeat", work / *std::max_element(seconds.begin(), seconds.end()), "1/s");
+  print_samples("atom_steps_per_second", work / median(seconds), "1/s");
+  print_samples("slowest_repeat", work / *std::max_element(seconds.begin(), seconds.end()), "1/s");
   std::string why;
   if (const auto energy = request.no_energy ? std::nullopt : meter.finish(&why)) {
-    line("joules_per_atom_step", energy->per_particle_step(atoms), "J");
-    line("power", energy->power.watts, "W");
+    print_samples("joules_per_atom_step", energy->per_particle_step(atoms), "J");
+    print_samples("power", energy->power.watts, "W");
   } else if (!request.no_energy) {
     fmt::print("# no energy: {}\n", why);
   }
   const Errors moving = errors_of(*samples, cells, tersoff);
-  line("force_error", moving.force, "1");
-  line("stress_error", moving.stress, "1");
+  print_samples("force_error", moving.force, "1");
+  print_samples("stress_error", moving.stress, "1");
 
   // Relaxation of all samples from where they began.
   samples->set(cells);
@@ -152,17 +152,17 @@ int run(const Request& request) {
   double evaluations = 0, largest = 0;
   for (const SampleState& state : samples->states())
     evaluations += state.evaluations, largest = std::max(largest, state.force);
-  line("relaxed_per_second", static_cast<double>(cells.size()) / relaxing, "1/s");
-  line("evaluations_to_rest", evaluations / static_cast<double>(cells.size()), "1");
-  line("force_at_rest", largest, "eV/angstrom");
-  line("stress_error_at_rest", errors_of(*samples, cells, tersoff).stress, "1");
+  print_samples("relaxed_per_second", static_cast<double>(cells.size()) / relaxing, "1/s");
+  print_samples("evaluations_to_rest", evaluations / static_cast<double>(cells.size()), "1");
+  print_samples("force_at_rest", largest, "eV/angstrom");
+  print_samples("stress_error_at_rest", errors_of(*samples, cells, tersoff).stress, "1");
   return 0;
 }
 
 }  // namespace
 
 int run_samples_bench(int argc, char** argv) {
-  Request request;
+  SamplesRequest request;
   Command app("cuboct-gpu samples",
               "Measures how fast a GPU computes small periodic samples under Tersoff's potential");
   app.option("--set", request.set, "Parameters: " + fmt::format("{}", fmt::join(tersoff_set_names(), ", ")))

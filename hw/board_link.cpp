@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hw/given_text.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
 #include "model/scene/config.h"
@@ -13,36 +14,26 @@
 namespace cuboct {
 namespace {
 
-struct Row {
+struct LinkFigureRow {
   const char *name, *unit;
   double low, high;
 };
 // In the order of LinkFigure.
-constexpr std::array<Row, kLinkFigures> kRows{{{"lanes", "1", 1, 1e6},
-                                               {"pins", "1", 1, 16},
-                                               {"rate", "Mbit/s", 1e-3, 1e7},
-                                               {"efficiency", "1", 1e-3, 1},
-                                               {"delay", "ns", 0, 1e9},
-                                               {"registers", "cycles", 0, 1000}}};
+constexpr std::array<LinkFigureRow, kLinkFigures> kLinkFigureRows{{{"lanes", "1", 1, 1e6},
+                                                                   {"pins", "1", 1, 16},
+                                                                   {"rate", "Mbit/s", 1e-3, 1e7},
+                                                                   {"efficiency", "1", 1e-3, 1},
+                                                                   {"delay", "ns", 0, 1e9},
+                                                                   {"registers", "cycles", 0, 1000}}};
 
-// Present, not empty.
-std::string text_at(const ConfigTable& table, const std::string& key, const std::string& hint) {
-  const auto value = table.find(key);
-  if (!value) table.fail(fmt::format("'{}' has no {}", table.key(), key), hint);
-  const std::string text = value->string();
-  if (text.find_first_not_of(" \t\n") == std::string::npos)
-    value->fail(fmt::format("the {} of '{}' is empty", key, table.key()), hint);
-  return text;
-}
-
-BoardLinkKind::Figure figure_of(const ConfigTable& table, const Row& row) {
+BoardLinkKind::Figure figure_of(const ConfigTable& table, const LinkFigureRow& row) {
   BoardLinkKind::Figure figure;
   figure.value = table.number("value", quantity::number, Range::between(row.low, row.high));
-  const std::string unit = text_at(table, "unit", fmt::format("unit = \"{}\"", row.unit));
+  const std::string unit = given_text(table, "unit", fmt::format("unit = \"{}\"", row.unit));
   if (unit != row.unit)
     table.at("unit").fail(fmt::format("'{}' is in {}, not in '{}'", row.name, row.unit, unit),
                           "convert the value");
-  figure.source = text_at(table, "source", "where the value is published, or \"assumed: \" and why");
+  figure.source = given_text(table, "source", "where the value is published, or \"assumed: \" and why");
   table.done();
   return figure;
 }
@@ -51,22 +42,22 @@ BoardLinkKind kind_of(const std::string& name, const ConfigTable& table) {
   BoardLinkKind kind;
   kind.name = name;
   std::vector<std::string> known;
-  for (const Row& row : kRows) known.emplace_back(row.name);
+  for (const LinkFigureRow& row : kLinkFigureRows) known.emplace_back(row.name);
   for (const std::string& key : table.names())
     if (std::ranges::find(known, key) == known.end()) {
       const std::string near = did_you_mean(key, known);
       table.at(key).fail(fmt::format("unknown figure '{}'", key),
                          near.empty() ? "one of " + list_of(known) : near);
     }
-  for (size_t k = 0; k < kRows.size(); ++k)
-    kind.figures[k] = figure_of(table.at(kRows[k].name).table(), kRows[k]);
+  for (size_t k = 0; k < kLinkFigureRows.size(); ++k)
+    kind.figures[k] = figure_of(table.at(kLinkFigureRows[k].name).table(), kLinkFigureRows[k]);
   return kind;
 }
 
 }  // namespace
 
-const char* name_of(LinkFigure figure) { return kRows[static_cast<size_t>(figure)].name; }
-const char* unit_of(LinkFigure figure) { return kRows[static_cast<size_t>(figure)].unit; }
+const char* name_of(LinkFigure figure) { return kLinkFigureRows[static_cast<size_t>(figure)].name; }
+const char* unit_of(LinkFigure figure) { return kLinkFigureRows[static_cast<size_t>(figure)].unit; }
 
 double BoardLinkKind::bits_per_cycle(double clock) const {
   return of(LinkFigure::rate) * 1e6 * of(LinkFigure::efficiency) / clock;

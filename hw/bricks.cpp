@@ -11,11 +11,10 @@
 
 #include "hw/cell_box.h"
 #include "model/base/error.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
-
-constexpr size_t at(int index) { return static_cast<size_t>(index); }
 
 // The two axes of a layer across `axis`, the faster one first.
 std::pair<int, int> across(int axis) { return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2}; }
@@ -100,7 +99,7 @@ BrickWalk::BrickWalk(const Cell& shape, const Cell& extent, uint8_t has_link, in
       own_low[axis] = own_high[axis] = up ? last[axis] : 0;
       for_all({near_low[0], near_low[1], near_low[2]}, near_high, [&](Cell cell) {
         cell[axis] = own_low[axis];
-        sent[at(face)].push_back({grid.at(cell), grid.halo_tag(axis, cell), local(cell)});
+        sent[as_size(face)].push_back({grid.at(cell), grid.halo_tag(axis, cell), local(cell)});
       });
     }
     for_all(own_low, own_high, [&](const Cell& cell) {
@@ -112,11 +111,11 @@ BrickWalk::BrickWalk(const Cell& shape, const Cell& extent, uint8_t has_link, in
       }
       for_all(from, to, [&](const Cell& other) {
         Near n{grid.at(other), local(other), {}};
-        for (int a = 0; a < 3; ++a) n.offset[at(a)] = static_cast<int8_t>(other[a] - cell[a]);
+        for (int a = 0; a < 3; ++a) n.offset[as_size(a)] = static_cast<int8_t>(other[a] - cell[a]);
         near.push_back(n);
       });
       visit.end = static_cast<uint32_t>(near.size());
-      visits[at(segment)].push_back(visit);
+      visits[as_size(segment)].push_back(visit);
     });
   }
 }
@@ -173,7 +172,7 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
       for (int up = 0; up < 2; ++up) {
         const uint32_t other = lattice.neighbour(c, 2 * a + up);
         if (other != kNoCell && inside == (up != 0 ? box.extent[a] - 1 : 0))
-          box.neighbour[at(2 * a + up)] = node_of(other);
+          box.neighbour[as_size(2 * a + up)] = node_of(other);
       }
     }
   }
@@ -215,7 +214,7 @@ BrickMap::BrickMap(const Lattice& lattice, const Bricks& bricks, int axes) : gri
     if (!walk) walk = std::make_shared<const BrickWalk>(shape, extent, links, axes);
     walk_.push_back(walk);
     for_all({0, 0, 0}, {extent[0] - 1, extent[1] - 1, extent[2] - 1},
-            [&](const Cell& at) { place(n, grid_.at(at)) = bricks.cell(n, grid_.local(at)); });
+            [&](const Cell& index) { place(n, grid_.at(index)) = bricks.cell(n, grid_.local(index)); });
   }
   // As the records go: an axis forwards what came along those before it.
   for (int axis = 0; axis < axes; ++axis)
@@ -224,7 +223,7 @@ BrickMap::BrickMap(const Lattice& lattice, const Bricks& bricks, int axes) : gri
         const uint32_t to = bricks.neighbour(lattice, n, face);
         if (to == kNoNode) continue;
         const int32_t along = face % 2 == 1 ? -1 : bricks.extent(to)[axis];
-        for (const BrickWalk::Sent& s : walk_[n]->sent[at(face)])
+        for (const BrickWalk::Sent& s : walk_[n]->sent[as_size(face)])
           place(to, grid_.at(grid_.of_halo_tag(axis, s.tag, along))) = place(n, s.grid);
       }
 }

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <vector>
 
+#include "model/base/integer_math.h"
+
 namespace cuboct {
 namespace {
-
-uint64_t ceil_div(uint64_t a, uint64_t b) { return (a + b - 1) / b; }
 
 // From the load of an end beat to the cycle in which the receiver's phase can end: output register,
 // receiver's register.

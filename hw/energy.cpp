@@ -184,8 +184,6 @@ void add_idle(Sheet& sheet, const Plan& plan, double cycles, double clock, const
   energy.missing.emplace_back("leakage of registers: no figure of one apart from its energy");
 }
 
-constexpr double kMm2 = 1e-6;  // um^2
-
 }  // namespace
 
 // What synthesised nodes have of flip-flops over what their datapath and links need at least: with wide

@@ -6,17 +6,16 @@
 #include <tuple>
 
 #include "hw/cell_box.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
-
-constexpr size_t at(int index) { return static_cast<size_t>(index); }
 
 // The brick that a cell belongs to, as one number.
 uint64_t brick_of(const Cell& cell, const Cell& low, const Cell& brick) {
   uint64_t key = 0;
   for (int a = 2; a >= 0; --a)
-    key = key << 21 | static_cast<uint64_t>((cell[at(a)] - low[at(a)]) / brick[at(a)]);
+    key = key << 21 | static_cast<uint64_t>((cell[as_size(a)] - low[as_size(a)]) / brick[as_size(a)]);
   return key;
 }
 
@@ -141,7 +140,7 @@ const FitLoads::Load& FitLoads::load(const Cell& brick) {
   for (uint32_t n = 0; n < lattice.size(); ++n)
     if (census_.particles(n) > 0) cells.emplace_back(brick_of(lattice.cell(n), low_, brick), n);
   std::ranges::sort(cells);
-  const size_t lanes = at(plan_.arch.capacity);  // more do not shorten a pass
+  const size_t lanes = as_size(plan_.arch.capacity);  // more do not shorten a pass
   load.streamed.assign(lanes, 0);
   for (size_t first = 0; first < cells.size();) {
     size_t last = first;
@@ -165,11 +164,11 @@ const FitLoads::Load& FitLoads::load(const Cell& brick) {
 uint64_t FitLoads::least_cycles(const Cell& brick, int lanes, int pipes) {
   const Load& of = load(brick);
   const Latency& latency = plan_.latency;
-  const uint64_t streamed = of.streamed[std::min(at(lanes), of.streamed.size()) - 1];
-  const uint64_t issues = (of.pairs + at(pipes) - 1) / at(pipes) * at(latency.interval);
+  const uint64_t streamed = of.streamed[std::min(as_size(lanes), of.streamed.size()) - 1];
+  const uint64_t issues = (of.pairs + as_size(pipes) - 1) / as_size(pipes) * as_size(latency.interval);
   // The ends of force, update and of each migrate phase: filter, pipe, the last slot's way, an end beat.
-  return std::max(streamed + at(latency.filter), issues) + 2 + at(latency.pipe) + at(latency.update) +
-         at(plan_.rule.axes) * (3 + at(plan_.link.latency));
+  return std::max(streamed + as_size(latency.filter), issues) + 2 + as_size(latency.pipe) +
+         as_size(latency.update) + as_size(plan_.rule.axes) * (3 + as_size(plan_.link.latency));
 }
 
 }  // namespace cuboct

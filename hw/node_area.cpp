@@ -6,8 +6,6 @@
 namespace cuboct {
 namespace {
 
-constexpr double kBitProduct = 34, kAdderBit = 28, kMemoryBit = 6;
-
 // Slots, a FIFO of arrivals per face, halos of C, C, 3C, 3C, 9C, 9C records, the queue of candidates, and a
 // sum per slot and pipe; or those of a brick. A halo record lies where its cell is: without the cell's
 // number.

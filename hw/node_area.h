@@ -8,10 +8,13 @@
 
 namespace cuboct {
 
-// The node of docs/reference/node.md, counted from the widths of its RTL (rtl/lib). A bit product is an AND
-// gate and a full adder, 6 + 28 transistors in static CMOS; a bit of an adder or comparator 28; a bit of
-// memory 6 (an SRAM cell). Weste and Harris, CMOS VLSI Design, 4th ed., sections 11.2 and 12.2. Registers and
-// control are left out: they go with the same widths.
+// Transistors in static CMOS: of a bit product, an AND gate and a full adder (6 + 28); of a bit of an adder
+// or comparator; of a bit of memory, an SRAM cell. Weste and Harris, CMOS VLSI Design, 4th ed., sections 11.2
+// and 12.2.
+inline constexpr double kBitProduct = 34, kAdderBit = 28, kMemoryBit = 6;
+
+// The node of docs/reference/node.md, counted from the widths of its RTL (rtl/lib). Registers and control are
+// left out: they go with the same widths.
 struct NodeArea {
   double multipliers = 0;  // of the pair pipes, and of update where a type is held by force
   double tables = 0;       // force, and damping where the scene damps, of each pipe

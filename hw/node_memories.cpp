@@ -6,11 +6,10 @@
 
 #include "hw/rtl_design.h"
 #include "model/base/fixed_math.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
-
-int clog2(uint64_t n) { return n <= 1 ? 0 : std::bit_width(n - 1); }
 
 // As cuboct_node_core has it: bits of a pipe's exact sum of one axis.
 int sum_bits(const FixedRule& rule, int capacity) {
@@ -19,7 +18,7 @@ int sum_bits(const FixedRule& rule, int capacity) {
   while (!fits(range.low, force_bits) || !fits(range.high, force_bits)) ++force_bits;
   const int s_bits = rule.damped ? rule.widths.strength_bits : force_bits;
   return std::max(2, s_bits + rule.widths.difference_frac + 1 - rule.kick_shift) +
-         clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(capacity));
+         ceil_log2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(capacity));
 }
 
 }  // namespace
@@ -58,9 +57,9 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   ram("own particles, for the pipes", cells * capacity, seen, pipes);
   ram("ids, for the pipes' faults", cells * capacity, words.id_bits, pipes);
   // A candidate with the pairs of its row: one for each pipe at once, the others by the lane.
-  const int cell_bits = clog2(cells), slot_bits = std::max(1, clog2(capacity));
+  const int cell_bits = ceil_log2(cells), slot_bits = std::max(1, ceil_log2(capacity));
   const int queue_bits =
-      candidate + cell_bits + std::max(1, clog2(rows)) + lanes + pipes / arch.streamers * (1 + slot_bits);
+      candidate + cell_bits + std::max(1, ceil_log2(rows)) + lanes + pipes / arch.streamers * (1 + slot_bits);
   memories.push_back(
       {"queue", static_cast<uint64_t>(arch.queue_depth), queue_bits, arch.streamers, Kind::prompt});
   if (cells == 1) {
@@ -79,7 +78,7 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
   memories.push_back({"leading bits of positions", cells * rows,
                       rule.axes * std::min(rule.widths.filter_frac, rule.widths.position_frac), lanes,
                       Kind::late});
-  const int count_bits = std::max(1, clog2(capacity)) + 1;
+  const int count_bits = std::max(1, ceil_log2(capacity)) + 1;
   // Of own cells, and of those that particles go to from below, from above.
   const auto counts = [&](uint64_t depth, int copies, int reads) {
     memories.push_back({"counts", depth, count_bits, copies, Kind::prompt, reads});

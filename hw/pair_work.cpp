@@ -6,12 +6,10 @@
 
 #include "hw/rtl_design.h"
 #include "model/base/fixed_math.h"
+#include "model/contract/format_cures.h"
 
 namespace cuboct {
 namespace {
-
-// Multiplicands of constant width in rtl/lib: pair scales and weights, gains.
-constexpr int kScaleBits = 18, kGainBits = 18;
 
 // The slope times t; at degree 2 the second coefficient times t first, and the slope has one bit more.
 void add_table(Work& work, const FixedTable& table, int entry_bits) {

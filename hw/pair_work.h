@@ -10,6 +10,8 @@
 
 namespace cuboct {
 
+inline constexpr int kScaleBits = 18;  // of the multiplicand that a pair's scale or weight is, in rtl/lib
+
 // Multiplications of two's complement numbers.
 struct Product {
   int a = 0, b = 0;  // bits of the operands

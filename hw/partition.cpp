@@ -11,11 +11,10 @@
 
 #include "hw/cell_box.h"
 #include "model/base/error.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
-
-int32_t ceil_div(int32_t a, int32_t b) { return (a + b - 1) / b; }
 
 // The lengths that cut `nodes` into 1, 2, 3, ... parts, none longer than needed.
 std::vector<int32_t> lengths_of(int32_t nodes) {

@@ -8,7 +8,9 @@
 #include <bit>
 
 #include "hw/cell_box.h"
+#include "hw/pair_work.h"
 #include "model/base/hash.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
@@ -19,9 +21,6 @@ constexpr uint64_t kMostBrickWork = 1 << 20;
 // Of docs/reference/numeric.md: 2 since positions keep the guard bits. Bits of another contract are another
 // plan's.
 constexpr int kNumericContract = 2;
-constexpr int kScaleBits = 18;  // of a pair's scale
-
-int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
 void check_arch(const Arch& arch) {
   const auto positive = [&](const char* what, int value, int high) {

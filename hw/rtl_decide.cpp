@@ -7,18 +7,17 @@
 
 #include "hw/rtl_design.h"
 #include "model/base/fixed_math.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
 
 // Bits of two's complement that hold both ends.
-int bits_for(const ValueRange& range) {
+int bits_of_range(const ValueRange& range) {
   int bits = 1;
   while (!fits(range.low, bits) || !fits(range.high, bits)) ++bits;
   return bits;
 }
-
-int clog2(uint64_t n) { return n <= 1 ? 0 : std::bit_width(n - 1); }
 
 // A sized literal, the first bit last.
 std::string binary(const std::vector<bool>& bits) {
@@ -127,13 +126,13 @@ RtlDesign decide(const Plan& plan) {
     put(name("FirstOctave"), t.first_octave, "");
     put(name("FractionBits"), t.fraction_bits, "");
   };
-  const int force_bits = bits_for(table_range(rule.force));
+  const int force_bits = bits_of_range(table_range(rule.force));
   table("", rule.force, "force table: 0 uniform, 1 by octaves");
   constant("ForceBits", force_bits, "that hold every value of the force table");
   constant("Damped", rule.damped, "");
   if (rule.damped) {
     table("Damp", rule.damp, "damping table");
-    constant("DampBits", bits_for(table_range(rule.damp)), "that hold every value of the damping table");
+    constant("DampBits", bits_of_range(table_range(rule.damp)), "that hold every value of the damping table");
   }
   constant("Scaled", rule.scaled, "pairs of types differ");
   constant("Weighted", rule.weighted, "masses of types differ");
@@ -177,7 +176,7 @@ RtlDesign decide(const Plan& plan) {
   const int s_bits = rule.damped ? w.strength_bits : force_bits;
   const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
   design.pair_sum_bits =
-      kick_bits + clog2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
+      kick_bits + ceil_log2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
   for (uint32_t n = 0; n < plan.nodes(); ++n) {
     design.cells.push_back(plan.low_of(n));
     auto& faces = design.neighbour.emplace_back();
@@ -195,7 +194,7 @@ RtlDesign decide(const Plan& plan) {
 
 std::vector<bool> extent_bits(const Plan& plan, uint32_t node) {
   const Cell &brick = plan.bricks.shape(), extent = plan.bricks.extent(node);
-  const int width = clog2(static_cast<uint64_t>(std::max({brick[0], brick[1], brick[2]})) + 2);
+  const int width = ceil_log2(static_cast<uint64_t>(std::max({brick[0], brick[1], brick[2]})) + 2);
   std::vector<bool> bits;
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < width; ++b) bits.push_back(extent[a] >> b & 1);

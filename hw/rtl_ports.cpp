@@ -13,7 +13,7 @@ constexpr bool kIn = false, kOut = true;
 bool is_number(const std::string& bits) { return bits.find_first_not_of("0123456789") == std::string::npos; }
 
 // Of a sized literal.
-std::string width_of(const std::string& literal) { return literal.substr(0, literal.find('\'')); }
+std::string width_text(const std::string& literal) { return literal.substr(0, literal.find('\'')); }
 
 }  // namespace
 
@@ -34,8 +34,8 @@ std::vector<RtlPort> node_ports(const RtlDesign& design, bool core) {
   add(true, kIn, "steps_i", "32", "with start_i");
   add(true, kIn, "has_link_i", faces, "constant: the face has a neighbour; -x, +x, -y, +y, -z, +z");
   if (bricks) {
-    add(true, kIn, "extent_i", width_of(design.extents[0]), "constant: cells along x, y, z");
-    add(true, kIn, "exit_i", width_of(design.exits[0]),
+    add(true, kIn, "extent_i", width_text(design.extents[0]), "constant: cells along x, y, z");
+    add(true, kIn, "exit_i", width_text(design.exits[0]),
         "constant: by cell and face, the lattice has a cell there");
   }
   add(true, kIn, "load_valid_i", "1", "in IDLE: append a particle");

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "hw/energy_sheet.h"
+#include "hw/node_area.h"
 #include "hw/sample_node.h"
 
 namespace cuboct {
@@ -10,9 +11,6 @@ namespace {
 
 // Flip-flops of synthesised nodes over those that their datapath needs: docs/reference/energy.md.
 constexpr Band kRegisters{1.9, 3.2};
-// Transistors of a bit product and of an adder's bit (hw/node_area.h).
-constexpr double kBitProduct = 34, kAdderBit = 28;
-constexpr double kMm2 = 1e-6;  // um^2
 
 double real(uint64_t count) { return static_cast<double>(count); }
 

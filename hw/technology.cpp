@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "hw/given_text.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
 #include "model/scene/file_kind.h"
@@ -10,37 +11,27 @@
 namespace cuboct {
 namespace {
 
-struct Row {
+struct ConstantRow {
   const char *name, *unit;
 };
 // In the order of Constant.
-constexpr std::array<Row, kConstants> kRows{{{"add_bit", "pJ/bit"},
-                                             {"multiply_bit2", "pJ/bit^2"},
-                                             {"register_bit", "pJ/bit"},
-                                             {"clock_bit", "pJ/bit"},
-                                             {"memory_read", "pJ/bit"},
-                                             {"memory_write", "pJ/bit"},
-                                             {"memory_exponent", "1"},
-                                             {"leakage_transistor", "pW"},
-                                             {"leakage_memory_bit", "pW"},
-                                             {"wire_bit_mm", "pJ/bit/mm"},
-                                             {"link_bit", "pJ/bit"},
-                                             {"clock_device", "pJ"},
-                                             {"static_device", "mW"},
-                                             {"transistor_area", "um^2"},
-                                             {"register_area", "um^2"},
-                                             {"memory_bit_area", "um^2"},
-                                             {"wire_pitch", "um"}}};
-
-// Present, not empty.
-std::string text_at(const ConfigTable& table, const std::string& key, const std::string& hint) {
-  const auto value = table.find(key);
-  if (!value) table.fail(fmt::format("'{}' has no {}", table.key(), key), hint);
-  const std::string text = value->string();
-  if (text.find_first_not_of(" \t\n") == std::string::npos)
-    value->fail(fmt::format("the {} of '{}' is empty", key, table.key()), hint);
-  return text;
-}
+constexpr std::array<ConstantRow, kConstants> kConstantRows{{{"add_bit", "pJ/bit"},
+                                                             {"multiply_bit2", "pJ/bit^2"},
+                                                             {"register_bit", "pJ/bit"},
+                                                             {"clock_bit", "pJ/bit"},
+                                                             {"memory_read", "pJ/bit"},
+                                                             {"memory_write", "pJ/bit"},
+                                                             {"memory_exponent", "1"},
+                                                             {"leakage_transistor", "pW"},
+                                                             {"leakage_memory_bit", "pW"},
+                                                             {"wire_bit_mm", "pJ/bit/mm"},
+                                                             {"link_bit", "pJ/bit"},
+                                                             {"clock_device", "pJ"},
+                                                             {"static_device", "mW"},
+                                                             {"transistor_area", "um^2"},
+                                                             {"register_area", "um^2"},
+                                                             {"memory_bit_area", "um^2"},
+                                                             {"wire_pitch", "um"}}};
 
 TechnologyFigure figure_of(const ConfigTable& table, const std::string& unit, bool of_memory) {
   constexpr double kMost = 1e12;  // of any figure in its unit
@@ -51,13 +42,13 @@ TechnologyFigure figure_of(const ConfigTable& table, const std::string& unit, bo
     table.at("low").fail(
         fmt::format("'{}': low {:g} is above high {:g}", table.key(), figure.band.low, figure.band.high),
         "low is the least figure published or measured, high the greatest");
-  const std::string told = text_at(table, "unit", fmt::format("unit = \"{}\"", unit));
+  const std::string told = given_text(table, "unit", fmt::format("unit = \"{}\"", unit));
   if (told != unit)
     table.at("unit").fail(fmt::format("'{}' is in {}, not in '{}'", table.key(), unit, told),
                           "convert low and high");
   if (of_memory) figure.words = table.number("words", quantity::number, Range::between(1, kMost));
   figure.source =
-      text_at(table, "source", "where low and high are published, or \"measured by\" which script");
+      given_text(table, "source", "where low and high are published, or \"measured by\" which script");
   table.done();
   return figure;
 }
@@ -75,14 +66,15 @@ Technology technology_of(const ConfigTable& root) {
   technology.name = root.at("name").string();
   technology.title = root.string_or("title", "");
   std::vector<std::string> known;
-  for (const Row& row : kRows) known.emplace_back(row.name);
+  for (const ConstantRow& row : kConstantRows) known.emplace_back(row.name);
   for (const std::string& key : root.names())
     if (key != "name" && key != "title") check_key(root, key, known);
   for (size_t k = 0; k < kConstants; ++k) {
     const auto constant = static_cast<Constant>(k);
-    if (const auto table = root.table_at(kRows[k].name))
-      technology.figures[k] = figure_of(
-          *table, kRows[k].unit, constant == Constant::memory_read || constant == Constant::memory_write);
+    if (const auto table = root.table_at(kConstantRows[k].name))
+      technology.figures[k] =
+          figure_of(*table, kConstantRows[k].unit,
+                    constant == Constant::memory_read || constant == Constant::memory_write);
   }
   const bool memory = technology.at(Constant::memory_read) || technology.at(Constant::memory_write);
   if (memory && !technology.at(Constant::memory_exponent))
@@ -93,8 +85,8 @@ Technology technology_of(const ConfigTable& root) {
 
 }  // namespace
 
-const char* name_of(Constant constant) { return kRows[static_cast<size_t>(constant)].name; }
-const char* unit_of(Constant constant) { return kRows[static_cast<size_t>(constant)].unit; }
+const char* name_of(Constant constant) { return kConstantRows[static_cast<size_t>(constant)].name; }
+const char* unit_of(Constant constant) { return kConstantRows[static_cast<size_t>(constant)].unit; }
 
 Technology parse_technology(const std::string& text, const std::string& path) {
   return read_kind(FileKind::technology, text, path, technology_of);

@@ -23,6 +23,8 @@ struct Band {
 };
 inline bool overlap(const Band& a, const Band& b) { return a.low <= b.high && b.low <= a.high; }
 
+inline constexpr double kMm2 = 1e-6;  // of a um^2
+
 enum class Constant : uint8_t {
   add_bit,             // pJ/bit: an adder's or comparator's, linear in its width
   multiply_bit2,       // pJ/bit^2: a multiplier of a by b bits takes a b of them

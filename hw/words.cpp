@@ -6,11 +6,10 @@
 #include <bit>
 
 #include "hw/bricks.h"
+#include "model/base/integer_math.h"
 
 namespace cuboct {
 namespace {
-
-int ceil_div(int a, int b) { return (a + b - 1) / b; }
 
 void add(WordLayout& layout, FieldKind kind, int bits, bool is_signed = false, int axis = -1) {
   if (bits > 0) layout.push_back({kind, axis, bits_of(layout), bits, is_signed});

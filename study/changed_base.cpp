@@ -15,14 +15,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // Paths in a study count from its own directory.
-std::string beside(const std::string& study, const std::string& path) {
+std::string path_beside(const std::string& study, const std::string& path) {
   if (path.empty() || fs::path(path).is_absolute()) return path;
   return (fs::path(study).parent_path() / path).lexically_normal().string();
 }
 
 // A file that is not there is told where the study names it.
 std::string file_named_by(const ConfigValue& value, const std::string& study) {
-  std::string file = beside(study, value.string());
+  std::string file = path_beside(study, value.string());
   if (!is_file(file))
     value.fail(fmt::format("'{}' names no file: {}", value.key(), file),
                "paths count from the study's directory");

@@ -10,6 +10,7 @@
 #include "hw/rtl_emit.h"
 #include "model/base/error.h"
 #include "model/base/process.h"
+#include "model/base/quantity_text.h"
 #include "synth/fit_measure.h"
 #include "synth/fit_model.h"
 
@@ -24,10 +25,6 @@ constexpr uint64_t kSurely = 20;
 constexpr uint64_t kSurelyRegisters = 2;
 // Most links of so few nodes lead nowhere, and what they lead to is not built: only the whole tells.
 constexpr uint32_t kFewNodes = 8;
-
-std::string count_text(uint64_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 // The resources of which more is used than there is, those that it has too little of first.
 std::string excess(const FitAmounts& uses, const FitAmounts& room) {
@@ -44,7 +41,7 @@ std::string excess(const FitAmounts& uses, const FitAmounts& room) {
   return text;
 }
 
-struct Use {
+struct NodeUse {
   FitAmounts node{}, around{};  // of one node; of all else
   FitAmounts all(uint64_t nodes) const {
     FitAmounts sum = times(node, nodes);
@@ -54,10 +51,10 @@ struct Use {
 };
 
 // The most nodes like these that have room; what stands around them grows with their number.
-uint64_t nodes_that_fit(const Use& use, const FitAmounts& room, uint64_t nodes) {
+uint64_t nodes_that_fit(const NodeUse& use, const FitAmounts& room, uint64_t nodes) {
   uint64_t most = nodes;
   const auto fits = [&](uint64_t n) {
-    Use scaled = use;
+    NodeUse scaled = use;
     for (uint64_t& amount : scaled.around) amount = amount * n / nodes;
     return has_room(scaled.all(n), room);
   };
@@ -65,23 +62,22 @@ uint64_t nodes_that_fit(const Use& use, const FitAmounts& room, uint64_t nodes) 
   return most;
 }
 
-InputError no_room(const std::string& scene, const Plan& plan, const Board& board, const Use& use,
+InputError no_room(const std::string& scene, const Plan& plan, const Board& board, const NodeUse& use,
                    const FitAmounts& room, bool memories_alone) {
   const uint64_t nodes = plan.nodes(), fitting = nodes_that_fit(use, room, nodes),
                  cells = fitting * cells_of(plan.bricks.shape());
   const std::string what =
       fmt::format("{}: its {} and a host link do not fit the {} ({}): they take {}{}", scene,
-                  count_text(nodes, "node"), board.name, board.target, excess(use.all(nodes), room),
+                  counted(nodes, "node"), board.name, board.target, excess(use.all(nodes), room),
                   memories_alone ? " for their memories alone" : "");
   const double particles = static_cast<double>(plan.particles) / static_cast<double>(plan.lattice.size());
   std::string hint =
-      fitting == 0
-          ? fmt::format("not one such node fits; ")
-          : fmt::format("about {} like these would fit, {} with some {} of this scene; ",
-                        count_text(fitting, "node"), count_text(cells, "cell"),
-                        count_text(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
-                                                             particles * static_cast<double>(cells)))),
-                                   "particle"));
+      fitting == 0 ? fmt::format("not one such node fits; ")
+                   : fmt::format("about {} like these would fit, {} with some {} of this scene; ",
+                                 counted(fitting, "node"), counted(cells, "cell"),
+                                 counted(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
+                                                                   particles * static_cast<double>(cells)))),
+                                         "particle"));
   hint += fmt::format("--fit {} looks for a machine that fits, --unchecked writes this one for the simulator",
                       board.target);
   return InputError(what, hint);
@@ -99,7 +95,7 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
     NodeMemories memories(plan.rule, plan.arch, plan.particles);
     for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
       counts += memory_counts(target.family, m);
-    const Use use{amounts_of(counts), {}};
+    const NodeUse use{amounts_of(counts), {}};
     FitAmounts surely = times(room, kSurely);
     for (size_t r = 0; r < kFitted.size(); ++r)
       if (kFitted[r] == Resource::ff) surely[r] = times(room, kSurelyRegisters)[r];
@@ -115,7 +111,7 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
   };
   if (plan.nodes() > kFewNodes) {
     const Measured m = measure(Nodes::apart);
-    const Use use{amounts_of(m.node), amounts_of(m.around)};
+    const NodeUse use{amounts_of(m.node), amounts_of(m.around)};
     const FitAmounts all = use.all(plan.nodes());
     if (has_room(all, room)) return FitCheck::synthesised;
     // Not so much more that the nodes' borders can be all that is too much.

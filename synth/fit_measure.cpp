@@ -66,7 +66,7 @@ nlohmann::ordered_json to_json(const Counts& counts) {
   return json;
 }
 
-Counts counts_of(const nlohmann::json& json) {
+Counts kept_counts(const nlohmann::json& json) {
   Counts counts;
   for (const Resource r : kKept) counts[r] = json.at(to_string(r));
   return counts;
@@ -139,7 +139,7 @@ Measured Meter::measure(const std::function<void(const std::string& directory)>&
   if (!file.empty() && fs::is_regular_file(file, none)) {
     try {
       const nlohmann::json json = read_json(file);
-      return {counts_of(json.at("node")), counts_of(json.at("around")), json.at("nodes"), true};
+      return {kept_counts(json.at("node")), kept_counts(json.at("around")), json.at("nodes"), true};
     } catch (const std::exception&) {
       // It is measured anew.
     }

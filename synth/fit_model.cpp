@@ -5,10 +5,10 @@
 #include <cmath>
 #include <span>
 
+#include "model/base/integer_math.h"
+
 namespace cuboct::synth {
 namespace {
-
-constexpr uint64_t ceil_div(uint64_t a, uint64_t b) { return (a + b - 1) / b; }
 
 struct BlockShape {
   uint64_t bits, words;

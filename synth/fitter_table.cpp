@@ -9,6 +9,7 @@
 #include <set>
 #include <tuple>
 
+#include "model/base/quantity_text.h"
 #include "synth/fitter.h"
 
 namespace cuboct::synth {
@@ -21,10 +22,6 @@ constexpr size_t kShownWithoutRoom = 2;
 
 std::string cells_text(const Cell& brick) {
   return fmt::format("{} x {} x {}", brick[0], brick[1], brick[2]);
-}
-
-std::string count_text(uint64_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
 // Of a device that has none of it, "-".
@@ -245,8 +242,8 @@ void Fitter::refuse() {
     throw InputError(fmt::format("{}: none of the {} plans for {} that were synthesised fits; the nearest, "
                                  "nodes of {} cells with {} and {}, takes {}",
                                  scene_path_, measured_.size(), target_.name, cells_text(point.brick),
-                                 count_text(static_cast<uint64_t>(point.lanes), "lane"),
-                                 count_text(static_cast<uint64_t>(point.pipes), "pipe"), excess(uses)),
+                                 counted(static_cast<uint64_t>(point.lanes), "lane"),
+                                 counted(static_cast<uint64_t>(point.pipes), "pipe"), excess(uses)),
                      "each was estimated to fit, so the device is nearly full: give a shorter node.capacity "
                      "or node.queue_depth, or a larger device");
   }
@@ -273,8 +270,8 @@ void Fitter::refuse() {
   }
   const std::string what = fmt::format(
       "{}: its {} do not fit {}{}: the nearest plan, {} of {} cells with 1 lane and 1 pipe, takes {}{}",
-      scene_path_, count_text(lattice.size(), "cell"), target_.name,
-      arch_.narrow_memories ? " with narrow memories" : "", count_text(shape.nodes, "node"),
+      scene_path_, counted(lattice.size(), "cell"), target_.name,
+      arch_.narrow_memories ? " with narrow memories" : "", counted(shape.nodes, "node"),
       cells_text(shape.brick), excess(used), model_.empty() ? ", for its memories alone" : "");
   std::string hint;
   if (const Target* other = other_device())
@@ -284,15 +281,14 @@ void Fitter::refuse() {
     hint =
         fmt::format("no device that is known has room {}", model_.empty() ? "for these" : "by these numbers");
   const uint64_t cells = cells_that_fit();
-  hint +=
-      cells == 0
-          ? fmt::format("; not one cell fits {}", target_.name)
-          : fmt::format(
-                "; about {} would fit {}, some {} of this scene", count_text(cells, "cell"), target_.name,
-                count_text(std::max<uint64_t>(
-                               1, static_cast<uint64_t>(std::llround(static_cast<double>(cells) *
-                                                                     base_.plan.particles / lattice.size()))),
-                           "particle"));
+  hint += cells == 0
+              ? fmt::format("; not one cell fits {}", target_.name)
+              : fmt::format(
+                    "; about {} would fit {}, some {} of this scene", counted(cells, "cell"), target_.name,
+                    counted(std::max<uint64_t>(
+                                1, static_cast<uint64_t>(std::llround(
+                                       static_cast<double>(cells) * base_.plan.particles / lattice.size()))),
+                            "particle"));
   if (const int most = fullest(census_, lattice.size()); 2 * most <= arch_.capacity && !arch_.narrow_memories)
     hint +=
         fmt::format("; the fullest cell holds {} at the start, node.capacity is {}", most, arch_.capacity);

@@ -18,10 +18,10 @@ constexpr Band kLutsOfBit{1.8, 3.0};
 // Of the products of a flat plan yosys leaves some to LUTs: of sheet.toml five of fourteen.
 constexpr double kLeastOfFlat = 0.6;
 
-double ceil_div(double a, double b) { return std::ceil(a / b); }
+double pieces(double a, double b) { return std::ceil(a / b); }
 
 // A product of a by b bits in multipliers of 18 by 18.
-double dsps(const Product& p) { return p.count * ceil_div(p.a, 18) * ceil_div(p.b, 18); }
+double dsps(const Product& p) { return p.count * pieces(p.a, 18) * pieces(p.b, 18); }
 
 Counts memories_of(const Plan& plan, Family family) {
   Counts counts;

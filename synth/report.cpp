@@ -11,7 +11,7 @@
 namespace cuboct::synth {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Ordered = nlohmann::ordered_json;
 
 // Blocks deeper than this are in the JSON only.
 constexpr int kShownDepth = 3;
@@ -35,17 +35,17 @@ void add_rows(const Block& block, int depth, Family family, std::string& text) {
   for (const Block& child : inner->children) add_rows(child, depth + 1, family, text);
 }
 
-Json to_json(const Counts& counts, Family family) {
-  Json json;
+Ordered to_json(const Counts& counts, Family family) {
+  Ordered json;
   for (const Resource r : resources_of(family)) json[to_string(r)] = counts[r];
   return json;
 }
 
-Json to_json(const Block& block, Family family) {
-  Json json = {
+Ordered to_json(const Block& block, Family family) {
+  Ordered json = {
       {"module", block.module}, {"instances", block.instances}, {"uses", to_json(block.counts, family)}};
   if (!block.children.empty()) {
-    json["blocks"] = Json::array();
+    json["blocks"] = Ordered::array();
     for (const Block& child : block.children) json["blocks"].push_back(to_json(child, family));
   }
   return json;
@@ -76,8 +76,8 @@ std::string cycles_text(const ProjectCycles& c) {
   return fmt::format("{:.1f}, the mean of the first {} steps, counted; the most {}", c.mean, c.steps, c.most);
 }
 
-Json to_json(const ProjectCycles& c) {
-  Json json = {{"expected", c.expected}};
+Ordered to_json(const ProjectCycles& c) {
+  Ordered json = {{"expected", c.expected}};
   if (c.steps > 0) json["counted"] = {{"mean", c.mean}, {"most", c.most}, {"steps", c.steps}};
   return json;
 }
@@ -198,15 +198,15 @@ std::string report_json(const Report& report) {
 
 nlohmann::ordered_json to_json(const Report& report) {
   const Family family = target_of(report.target).family;
-  Json json = {{"plan", report.plan},
-               {"target", report.target},
-               {"device", report.device},
-               {"unit", report.unit},
-               {"nodes", report.nodes},
-               {"particles", report.particles},
-               {"cycles_per_step", to_json(report.cycles)},
-               {"used", to_json(report.used, family)},
-               {"holds", to_json(report.holds, family)}};
+  Ordered json = {{"plan", report.plan},
+                  {"target", report.target},
+                  {"device", report.device},
+                  {"unit", report.unit},
+                  {"nodes", report.nodes},
+                  {"particles", report.particles},
+                  {"cycles_per_step", to_json(report.cycles)},
+                  {"used", to_json(report.used, family)},
+                  {"holds", to_json(report.holds, family)}};
   if (const auto fit = fit_of(report))
     json["fit"] = {{"units", fit->units}, {"limit", to_string(fit->limit)}};
   if (report.cells) json["logic_cells"] = *report.cells;
@@ -214,7 +214,7 @@ nlohmann::ordered_json to_json(const Report& report) {
   if (report.depth) json["depth"] = *report.depth;
   if (report.estimate) {
     const Estimate& e = *report.estimate;
-    Json ends = Json::array();
+    Ordered ends = Ordered::array();
     for (const Estimate::End& end : e.ends)
       ends.push_back({{"from", end.from}, {"to", end.to}, {"ns", end.ns}});
     json["estimate"] = {{"mhz", e.mhz()},     {"ns", e.ns},     {"wires_ns", e.wires}, {"to_share", e.error},

@@ -4,19 +4,15 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "emu/lattice/cycles.h"
 #include "emu/lattice/phase_spans.h"
 #include "model/base/parallel.h"
 
 namespace cuboct::emu {
 namespace {
 
-// As in timing.cpp.
-constexpr int64_t kSent = 1, kReceived = 2, kAnswered = 1;
 // A thread must have so many nodes and particles beside the barriers of the step.
-constexpr int64_t kWorkPerThread = 100;
-
-constexpr size_t at(int index) { return static_cast<size_t>(index); }
-constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
+constexpr int64_t kArrivalWorkPerThread = 100;
 
 }  // namespace
 
@@ -367,7 +363,7 @@ void ArrivalTiming::step(const CellSlots& slots, std::span<const Leaving> leavin
   begin(slots, leaving);
   const int64_t work = int64_t{nodes_} + 10 * int64_t{slots.first[nodes_]};
   const int threads = static_cast<int>(
-      std::clamp<int64_t>(work / kWorkPerThread, 1, std::min<int64_t>(threads_, int64_t{nodes_})));
+      std::clamp<int64_t>(work / kArrivalWorkPerThread, 1, std::min<int64_t>(threads_, int64_t{nodes_})));
   const auto for_all = [&](const auto& part) {
     const auto range = [&](size_t from, size_t to) {
       for (size_t n = from; n < to; ++n) part(static_cast<uint32_t>(n));

@@ -4,22 +4,16 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "emu/lattice/cycles.h"
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/phase_spans.h"
+#include "model/base/integer_math.h"
 #include "model/base/parallel.h"
 
 namespace cuboct::emu {
 namespace {
 
-// As in timing.cpp: an end beat loaded in cycle t is seen by its sender in t + 1, by its receiver in t + 2.
-constexpr int64_t kSent = 1, kReceived = 2;
-constexpr int64_t kWorkPerThread = 1000;
-
-constexpr size_t at(int index) { return static_cast<size_t>(index); }
-constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
 constexpr uint8_t bit(int axis) { return static_cast<uint8_t>(1u << axis); }
-
-int64_t ceil_div(int64_t a, int64_t b) { return (a + b - 1) / b; }
 
 }  // namespace
 
@@ -238,7 +232,7 @@ void BrickTiming::meet(const CellSlots& slots, uint32_t cell, const std::array<i
       if (same && slot >= from && slot < to) --hits;
       if (hits == 0) continue;
       scratch.entries.push_back(
-          ForceWork::entry(item, static_cast<uint32_t>(ceil_div(hits, int64_t{filter_.pipes}))));
+          ForceWork::entry(item, static_cast<uint32_t>(ceil_div(int64_t{hits}, int64_t{filter_.pipes}))));
       scratch.pairs += static_cast<uint64_t>(hits);
     }
   }

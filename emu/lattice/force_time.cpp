@@ -5,13 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "emu/lattice/cycles.h"
 #include "hw/plan.h"
 
 namespace cuboct::emu {
 namespace {
-
-// Long before the engine's first cycle.
-constexpr int64_t kLongAgo = INT64_MIN / 4;
 
 // One candidate after the other: read, then walked past the slots.
 ForceTime walk_time(const ForceShape& shape, const ForceWork& work) {

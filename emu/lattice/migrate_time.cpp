@@ -5,13 +5,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "emu/lattice/cycles.h"
+
 namespace cuboct::emu {
-namespace {
-
-constexpr size_t at(int axis) { return static_cast<size_t>(axis); }
-
-}  // namespace
-
 Migration::Migration(const Lattice& lattice, int beats, int on_the_way)
     : lattice_(lattice), beats_(beats), on_the_way_(on_the_way), leaving_bits_(lattice.size()) {
   for (auto& scan : scan_) scan.resize(lattice.size());

@@ -8,6 +8,7 @@
 #include "emu/lattice/arrival_timing.h"
 #include "emu/lattice/board_links.h"
 #include "emu/lattice/brick_timing.h"
+#include "emu/lattice/cycles.h"
 #include "emu/lattice/force_time.h"
 #include "emu/lattice/hits.h"
 #include "emu/lattice/migrate_time.h"
@@ -17,21 +18,7 @@
 namespace cuboct::emu {
 namespace {
 
-// An end beat loaded in cycle t is seen by its sender (`sent`) in t + 1, by its receiver in t + 2: through
-// the sender's output register and the receiver's; `LinkCode::latency` comes to the latter.
-constexpr int64_t kSent = 1, kReceived = 2;
-// A particle is seen a cycle later: its memory answers then. Of a narrow memory it is read word by word.
-constexpr int64_t kAnswered = 1;
-// The end beat of a face without link: seen since long before.
-constexpr int64_t kLongAgo = INT64_MIN / 4;
-// A step costs about 50 ns per node and 100 ns per particle. A thread must have enough of it beside the
-// barriers of the step: in units of a node's 50 ns.
-constexpr int64_t kWorkPerThread = 1000;
-
 using Cycles = std::vector<int64_t>;  // by node
-
-constexpr size_t at(int index) { return static_cast<size_t>(index); }
-constexpr size_t at(Phase phase) { return static_cast<size_t>(phase); }
 
 struct Scratch {
   HitScratch hits;

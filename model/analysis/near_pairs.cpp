@@ -19,7 +19,7 @@ namespace {
 constexpr double kListing = 20, kLeastSkin = 0.02, kMostSkin = 0.3;
 constexpr double kFirstSkin = 0.1;  // of a run of which nothing is known
 
-constexpr size_t kWorthAThread = 2000;  // particles
+constexpr size_t kPairedPerThread = 2000;  // particles
 
 }  // namespace
 
@@ -89,7 +89,7 @@ void NearPairs::list() {
   const double range = (cutoff_ + skin_) * (1 + 1e-9);
   // Stretches of particles in the order of cells, each with the particles near it that have a larger id.
   const int threads = threads_ > 0 ? threads_ : usable_cores();
-  const size_t parts = std::clamp<size_t>(x_.size() / kWorthAThread, 1, static_cast<size_t>(threads));
+  const size_t parts = std::clamp<size_t>(x_.size() / kPairedPerThread, 1, static_cast<size_t>(threads));
   std::vector<std::vector<uint32_t>> found(parts);
   std::vector<uint32_t> count(x_.size());
   const auto begin_of = [&](size_t part) { return order.size() * part / parts; };

@@ -8,15 +8,15 @@
 namespace cuboct {
 namespace {
 
-struct Bond {
+struct DampedBond {
   uint32_t i, j;
   Vec3 e;
   double along, across, damping;  // 1/s^2, 1/s^2, 1/s
 };
 
-std::vector<Bond> bonds_of(const Rule& rule, const Periodic& periodic, std::span<const Vec3> x,
-                           std::span<const uint8_t> type) {
-  std::vector<Bond> bonds;
+std::vector<DampedBond> bonds_of(const Rule& rule, const Periodic& periodic, std::span<const Vec3> x,
+                                 std::span<const uint8_t> type) {
+  std::vector<DampedBond> bonds;
   CellList cells(rule.cutoff(), periodic);
   cells.build(x);
   cells.for_each_pair(x, [&](uint32_t i, uint32_t j, const Vec3& d, double r) {
@@ -48,7 +48,7 @@ Quotient stability_quotient(const Rule& rule, const Periodic& periodic, std::spa
   // y counts displacements times the root of the mass, so that K/m and C/m are symmetric.
   std::vector<double> root;
   for (const uint8_t t : type) root.push_back(std::sqrt(rule.relative_mass(t)));
-  const std::vector<Bond> bonds = bonds_of(rule, periodic, x, type);
+  const std::vector<DampedBond> bonds = bonds_of(rule, periodic, x, type);
   const double dt = rule.dt;
   Quotient q;
   const auto normalise = [&] {
@@ -77,7 +77,7 @@ Quotient stability_quotient(const Rule& rule, const Periodic& periodic, std::spa
       q.hold_dt2 += stiff * y[i].squaredNorm();
       q.hold += (stiff + damp) * y[i].squaredNorm();
     }
-    for (const Bond& b : bonds) {
+    for (const DampedBond& b : bonds) {
       const Vec3 w = y[b.i] / root[b.i] - y[b.j] / root[b.j];
       const double along = b.e.dot(w);
       const Vec3 stiff = dt * dt * (b.along * along * b.e + b.across * (w - along * b.e)),

@@ -24,7 +24,7 @@ namespace {
 // what the body could ever transmit in tension.
 constexpr int kBonds = 12;
 
-constexpr size_t kWorthAThread = 4096;  // particles
+constexpr size_t kWatchedPerThread = 4096;  // particles
 
 constexpr double kCreep = 1e-3;  // of the pitch: where a law's stiffness begins to change
 
@@ -442,7 +442,7 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
       next[id] = real(finish_of<FinishResult>(rule, kicks[id], p.x, p.v, p.u, p.type).v);
     }
   };
-  for_each_range(v.size(), kWorthAThread, move, threads_);
+  for_each_range(v.size(), kWatchedPerThread, move, threads_);
   moment.v = [&](uint32_t id) { return v[id]; };
   moment.v_next = [&](uint32_t id) { return next[id]; };
   moment.force = [&](uint32_t id) { return force_of(rule, kicks[id]); };

@@ -33,6 +33,10 @@ std::string count_text(double count) {
   return fmt::format("{:.4g} billion", count / 1e9);
 }
 
+std::string counted(uint64_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string times_text(double times) {
   return times < 1000 ? fmt::format("{:.3g}", times) : count_text(times);
 }

@@ -2,6 +2,7 @@
 // Quantities for people: three digits, in the multiple of the unit that makes them 1 to 1000.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace cuboct {
@@ -18,6 +19,9 @@ std::string quantity_text(double value, const std::string& unit);
 
 // "45 million".
 std::string count_text(double count);
+
+// "1 node", "2 nodes".
+std::string counted(uint64_t count, const char* what);
 
 // Three digits, and from a thousand on as count_text: never an exponent.
 std::string times_text(double times);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/atom_units.h"
 #include "model/base/fire.h"
 #include "model/multiscale/sample_descent.h"
 
@@ -12,8 +13,6 @@ namespace cuboct {
 namespace {
 
 using Eigen::VectorXd;
-
-constexpr double kAngstrom = 1e-10;  // m
 
 // A sample in one cell; its degrees of freedom are the atoms' coordinates.
 class Strained {

@@ -17,7 +17,7 @@
 namespace cuboct {
 namespace {
 
-constexpr size_t kAtOnce = 8;  // elements that a thread takes at a time
+constexpr size_t kElementsAtOnce = 8;  // elements that a thread takes at a time
 
 // The three edges from corner 0.
 Mat3 edges_of(const std::array<ElementMesh::Corner, 4>& element, const std::vector<Vec3>& x,
@@ -28,7 +28,7 @@ Mat3 edges_of(const std::array<ElementMesh::Corner, 4>& element, const std::vect
   return out;
 }
 
-size_t parts_of(size_t elements) { return (elements + kAtOnce - 1) / kAtOnce; }
+size_t parts_of(size_t elements) { return (elements + kElementsAtOnce - 1) / kElementsAtOnce; }
 
 }  // namespace
 
@@ -80,7 +80,8 @@ template <typename Work>
 void ElementBody::for_each_element(const Work& work) const {
   const size_t count = mesh_.elements.size();
   for_each_part(parts_of(count), options_.threads, [&](size_t part, int) {
-    for (size_t e = part * kAtOnce; e < std::min(count, (part + 1) * kAtOnce); ++e) work(e, part);
+    for (size_t e = part * kElementsAtOnce; e < std::min(count, (part + 1) * kElementsAtOnce); ++e)
+      work(e, part);
   });
 }
 

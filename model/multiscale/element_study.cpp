@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/base/atom_units.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
 #include "model/base/hash.h"
@@ -17,8 +18,6 @@
 namespace cuboct {
 namespace {
 
-constexpr double kElectronVolt = 1.602176634e-19;  // J
-constexpr double kAngstrom = 1e-10;                // m
 constexpr int64_t kMostCubes = 100, kMostSets = 1000;
 constexpr double kMostStrain = 0.2, kLeastStrain = 1e-9, kMostTolerance = 0.01;
 constexpr int kMostCells = 4, kMostRefine = 16;

@@ -9,7 +9,7 @@
 namespace cuboct {
 namespace {
 
-constexpr size_t kAtOnce = 8;  // samples that a thread takes at a time
+constexpr size_t kSamplesAtOnce = 8;  // samples that a thread takes at a time
 
 class HostRelaxer final : public SampleRelaxer {
  public:
@@ -19,9 +19,9 @@ class HostRelaxer final : public SampleRelaxer {
   }
 
   void relax(std::span<const StrainedSample> due, std::span<SampleAnswer> answers) override {
-    const size_t parts = (due.size() + kAtOnce - 1) / kAtOnce;
+    const size_t parts = (due.size() + kSamplesAtOnce - 1) / kSamplesAtOnce;
     for_each_part(parts, static_cast<int>(forces_.size()), [&](size_t part, int member) {
-      for (size_t k = part * kAtOnce; k < std::min(due.size(), (part + 1) * kAtOnce); ++k)
+      for (size_t k = part * kSamplesAtOnce; k < std::min(due.size(), (part + 1) * kSamplesAtOnce); ++k)
         answers[k] =
             relax_sample(*forces_[static_cast<size_t>(member)], due[k].cell, places_[due[k].sample], how_);
     });

@@ -10,18 +10,18 @@
 #include "model/base/error.h"
 #include "model/bond_order/tersoff_kernel.h"
 #include "model/multiscale/spring_kernel.h"
+#include "model/multiscale/tersoff_law.h"
 
 namespace cuboct {
 namespace {
 
-constexpr double kSkin = 0.5;    // angstrom: as of samples under Tersoff's potential
 constexpr double kWidth = 0.06;  // of the edge: half of what is between the second and the third shell of
                                  // diamond
 
 class SpringForces : public AtomicForces {
  public:
   explicit SpringForces(const ShellSprings& springs)
-      : springs_(springs), list_(springs.cutoff(), kSkin, bond_lanes()) {}
+      : springs_(springs), list_(springs.cutoff(), kTersoffSkin, bond_lanes()) {}
 
   double evaluate(const Mat3& cell, std::span<const Vec3> x, std::span<Vec3> f, Mat3& virial) override {
     const AtomBox box{cell, {true, true, true}};

@@ -10,12 +10,11 @@ namespace {
 
 // Samples of all elements are strained from one lattice: with this a list serves them up to strains of some
 // per cent.
-constexpr double kSkin = 0.5;  // angstrom
 
 class SampleTersoff : public AtomicForces {
  public:
   explicit SampleTersoff(const Tersoff& tersoff)
-      : list_(tersoff.cutoff(), kSkin, bond_lanes()), forces_(tersoff) {}
+      : list_(tersoff.cutoff(), kTersoffSkin, bond_lanes()), forces_(tersoff) {}
 
   double evaluate(const Mat3& cell, std::span<const Vec3> x, std::span<Vec3> f, Mat3& virial) override {
     const AtomBox box{cell, {true, true, true}};

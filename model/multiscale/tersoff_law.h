@@ -9,6 +9,8 @@
 
 namespace cuboct {
 
+inline constexpr double kTersoffSkin = 0.5;  // angstrom: of the bonds' lists of samples
+
 // `tersoff` in eV and angstrom, of one element or more: the atoms are of the first.
 std::shared_ptr<const AtomicLaw> tersoff_law(Tersoff tersoff);
 

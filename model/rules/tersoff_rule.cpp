@@ -91,9 +91,9 @@ class TersoffRule final : public RoundsRule {
   TersoffRule(std::string name, const Tersoff& tersoff, const CrystalRest& rest)
       : name_(std::move(name)),
         published_(tersoff),
-        tersoff_(tersoff.scaled(kElectronvolt, kAngstrom)),
-        stiffness_(rest.curvature * kElectronvolt / (kAngstrom * kAngstrom)),
-        wave_(rest.wave * kElectronvolt) {}
+        tersoff_(tersoff.scaled(kElectronVolt, kAngstrom)),
+        stiffness_(rest.curvature * kElectronVolt / (kAngstrom * kAngstrom)),
+        wave_(rest.wave * kElectronVolt) {}
 
   const RuleDeclaration& declaration() const override {
     static const RuleDeclaration rule = declared();

@@ -7,13 +7,11 @@
 #include <memory>
 #include <string>
 
+#include "model/base/atom_units.h"
 #include "model/bond_order/crystal_rest.h"
 #include "model/rules/rounds_rule.h"
 
 namespace cuboct {
-
-// Of the potentials' units in SI: J and m, CODATA 2018, exact.
-inline constexpr double kElectronvolt = 1.602176634e-19, kAngstrom = 1e-10;
 
 // `name`: of the set or file, for people. `tersoff`: of one element, in eV and angstrom. `rest`: in the same
 // units, of the crystal that the time step is meant for.

@@ -15,8 +15,8 @@
 namespace cuboct {
 namespace {
 
-constexpr uint64_t kMagic = 0x5450434854424355;  // "UCBTHCPT"
-constexpr uint64_t kVersion = 3;
+constexpr uint64_t kCheckpointMagic = 0x5450434854424355;  // "UCBTHCPT"
+constexpr uint64_t kCheckpointVersion = 3;
 constexpr size_t kCounters = 3;  // words; of an engine that counts less they are 0
 
 void put(WordWriter& out, const std::vector<Vec3>& list) {
@@ -48,8 +48,9 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, Engin
   };
   attempt([&] {
     out.emplace(temporary);
-    for (const uint64_t value : {kMagic, kVersion, head.plan_hash, head.step, uint64_t{head.particles},
-                                 head.hash_every, uint64_t{head.cycles}, uint64_t{head.energies}})
+    for (const uint64_t value :
+         {kCheckpointMagic, kCheckpointVersion, head.plan_hash, head.step, uint64_t{head.particles},
+          head.hash_every, uint64_t{head.cycles}, uint64_t{head.energies}})
       out->word(value);
     out->number(head.seconds);
     out->number(head.largest_speed);
@@ -87,10 +88,11 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, Engin
 CheckpointReader::CheckpointReader(const std::string& path, uint64_t plan_hash, bool displaced)
     : path_(path), in_(path), displaced_(displaced) {
   constexpr uint64_t kLeast = 22;  // words of a checkpoint without particles
-  if (in_.size() < 2 || in_.word() != kMagic) throw InputError(fmt::format("{} is not a checkpoint", path));
-  if (const uint64_t version = in_.word(); version != kVersion)
+  if (in_.size() < 2 || in_.word() != kCheckpointMagic)
+    throw InputError(fmt::format("{} is not a checkpoint", path));
+  if (const uint64_t version = in_.word(); version != kCheckpointVersion)
     throw InputError(fmt::format("{} is a checkpoint of version {}; this program reads version {}", path,
-                                 version, kVersion));
+                                 version, kCheckpointVersion));
   if (in_.size() < kLeast || in_.ragged())
     throw InputError(fmt::format("{} is damaged: it is not whole", path));
   while (in_.mark().words + 1 < in_.size()) in_.word();

@@ -8,8 +8,8 @@
 namespace cuboct {
 namespace {
 
-constexpr uint64_t kMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
-constexpr uint64_t kVersion = 3;
+constexpr uint64_t kJournalMagic = 0x4c4e524a54424355;  // "UCBTJRNL"
+constexpr uint64_t kJournalVersion = 3;
 enum Kind : uint64_t { kHash = 1, kSample, kCycles, kFrame, kRealFrame };
 
 }  // namespace
@@ -55,7 +55,7 @@ void take_body(WordReader& in, size_t particles, bool displaced, Body& body) {
 
 Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced)
     : path_(path), displaced_(displaced), out_(std::make_unique<WordWriter>(path, WordMark{})) {
-  for (const uint64_t value : {kMagic, kVersion, plan_hash}) out_->word(value);
+  for (const uint64_t value : {kJournalMagic, kJournalVersion, plan_hash}) out_->word(value);
 }
 
 Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, const WordMark& end,
@@ -70,7 +70,7 @@ Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, co
     throw InputError(fmt::format("{} is damaged: its words hash to {:016x}, its checkpoint says {:016x}",
                                  path, in.mark().hash, end.hash));
   in.seek(0);
-  if (in.word() != kMagic || in.word() != kVersion || in.word() != plan_hash)
+  if (in.word() != kJournalMagic || in.word() != kJournalVersion || in.word() != plan_hash)
     throw InputError(fmt::format("{} is not the journal of this plan", path));
   while (in.mark().words < end.words) {
     const uint64_t place = in.mark().words, kind = in.word(), step = in.word(), words = in.count(1);

@@ -15,7 +15,7 @@ namespace {
 
 using Keys = std::vector<std::string_view>;
 
-struct Kind {
+struct Row {
   FileKind kind;
   const char* name;       // completes "this is ..."
   const char* taker;      // a format: {} is the file as a word of a shell
@@ -26,8 +26,8 @@ struct Kind {
 const Keys kOfSettings{"sweep", "search", "figure", "truth", "samples", "speed"};
 
 // A file is of the first kind that fits.
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> rows{
+const std::vector<Row>& kinds() {
+  static const std::vector<Row> rows{
       {FileKind::run_record,
        "the record of a run",
        "'cuboct report' and 'cuboct picture' take its directory",
@@ -75,7 +75,7 @@ bool any(const std::vector<std::string>& names, const Keys& keys) {
   return std::ranges::any_of(keys, [&](std::string_view key) { return std::ranges::count(names, key) > 0; });
 }
 
-bool fits(const Kind& kind, const std::vector<std::string>& names) {
+bool fits(const Row& kind, const std::vector<std::string>& names) {
   return std::ranges::all_of(kind.has, [&](const Keys& keys) { return any(names, keys); }) &&
          !any(names, kind.lacks);
 }
@@ -90,9 +90,9 @@ void refuse_other_kind(FileKind wanted, const std::string& text, const std::stri
     return;  // no TOML
   }
   const std::vector<std::string> names = root->names();
-  const Kind& asked = *std::ranges::find(kinds(), wanted, &Kind::kind);
+  const Row& asked = *std::ranges::find(kinds(), wanted, &Row::kind);
   if (fits(asked, names)) return;
-  const auto found = std::ranges::find_if(kinds(), [&](const Kind& kind) { return fits(kind, names); });
+  const auto found = std::ranges::find_if(kinds(), [&](const Row& kind) { return fits(kind, names); });
   if (found == kinds().end()) return;
   for (const std::string& name : names)
     if (any({name}, found->has.front()))

@@ -13,8 +13,8 @@
 namespace cuboct {
 namespace {
 
-constexpr size_t kDeepest = 64;           // regions of regions: each is a call within a call
-constexpr size_t kMostParts = 1'000'000;  // of one region: names can double it at each level
+constexpr size_t kDeepest = 64;            // regions of regions: each is a call within a call
+constexpr size_t kMostShapes = 1'000'000;  // of one region: names can double it at each level
 
 }  // namespace
 
@@ -48,9 +48,9 @@ ShapePtr Regions::resolve(size_t region, const ConfigValue& at) const {
   open_.push_back(region);
   ShapePtr shape = read_shape(values_[region], *this);
   open_.pop_back();
-  if (shape->parts() > kMostParts)
+  if (shape->parts() > kMostShapes)
     values_[region].fail(fmt::format("region '{}' has {} parts: at most {} may be", names_[region],
-                                     shape->parts(), kMostParts));
+                                     shape->parts(), kMostShapes));
   return shapes_[region] = std::move(shape);
 }
 

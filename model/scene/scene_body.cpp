@@ -19,14 +19,14 @@
 namespace cuboct {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of the pitch, as in packing.h
+constexpr double kPitchTolerance = 1e-6;  // of the pitch, as in packing.h
 constexpr size_t kMaxTypes = 256;
 constexpr double kMostParticles = 4e9;  // ids have 32 bits
 constexpr double kBytesToRead = 64;     // a particle while it is read: position, velocity, type, two numbers
 
 // Particles on a region's surface count as inside; where there is no packing the law's cutoff sets the scale.
 double tolerance_of(const Scene& scene) {
-  return kTolerance * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
+  return kPitchTolerance * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
 }
 
 void check_size(const ConfigValue& geometry, const Bounds& bounds, double pitch) {
@@ -34,7 +34,7 @@ void check_size(const ConfigValue& geometry, const Bounds& bounds, double pitch)
     const double size = bounds.high[a] - bounds.low[a];
     const char axis = "xyz"[a];
     if (std::isinf(size)) geometry.fail(fmt::format("the geometry has no end along {}", axis));
-    if (size < pitch * (1 - kTolerance))
+    if (size < pitch * (1 - kPitchTolerance))
       geometry.fail(fmt::format("the geometry is {:.6g} m along {}, less than the pitch {:.6g} m",
                                 std::max(size, 0.0), axis, pitch));
   }
@@ -75,7 +75,7 @@ void check_grains(const GrainChoice& choice, const GrainDomain& domain, double p
   constexpr double kMostGrains = 1e7;
   const Grains& grains = choice.grains;
   const ConfigTable& table = choice.table;
-  if (grains.size < kLeastSize * pitch * (1 - kTolerance))
+  if (grains.size < kLeastSize * pitch * (1 - kPitchTolerance))
     table.at("size").fail(
         fmt::format("grains of {:.3g} pitches: they have at least {:g}", grains.size / pitch, kLeastSize),
         "a larger size, or a finer pitch");

@@ -12,7 +12,7 @@
 namespace cuboct {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // of the bond, as of a packing's pitch
+constexpr double kBondTolerance = 1e-6;  // of the bond, as of a packing's pitch
 
 Vec3 edges_of(const CrystalChoice& crystal) { return {crystal.edge(0), crystal.edge(1), crystal.edge(2)}; }
 
@@ -29,7 +29,7 @@ SitePeriods periods_of(const CrystalChoice& crystal) {
           [&crystal](size_t a, double extent) {
             const double cells = extent / crystal.edge(a);
             return crystal.repeats(a) &&
-                   std::abs(cells - std::round(cells)) * crystal.edge(a) < kTolerance * crystal.bond;
+                   std::abs(cells - std::round(cells)) * crystal.edge(a) < kBondTolerance * crystal.bond;
           }};
 }
 
@@ -132,7 +132,7 @@ void place_crystal(const ConfigTable& root, const Regions& regions, const Crysta
   const ConfigValue place = geometry ? *geometry : root.at("box");
   check_count(place, cells.count * static_cast<double>(basis.size()));
   const Vec3 edges = edges_of(crystal);
-  const double tolerance = kTolerance * crystal.bond;
+  const double tolerance = kBondTolerance * crystal.bond;
   for (int64_t l = cells.first[2]; l <= cells.last[2]; ++l)
     for (int64_t k = cells.first[1]; k <= cells.last[1]; ++k)
       for (int64_t h = cells.first[0]; h <= cells.last[0]; ++h) {

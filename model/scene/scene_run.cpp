@@ -82,7 +82,7 @@ CurveOf curve_at(const ConfigValue& value, const Scene& scene) {
 }
 
 // Each is a directory and a summary.
-constexpr int64_t kMostParts = 100;
+constexpr int64_t kMostStageParts = 100;
 
 }  // namespace
 
@@ -93,7 +93,7 @@ std::vector<StageName> stage_names(const ConfigTable& root) {
     const std::string stage = read_name(at);
     const bool twice = std::ranges::count(names, stage, &StageName::stage) > 0;
     const auto asked = table.find("parts");
-    const auto parts = static_cast<size_t>(asked ? asked->integer(2, kMostParts) : 1);
+    const auto parts = static_cast<size_t>(asked ? asked->integer(2, kMostStageParts) : 1);
     for (size_t part = 0; part < parts; ++part) {
       const std::string name = parts > 1 ? fmt::format("{}-{}", stage, part + 1) : stage;
       if (twice || std::ranges::count(names, name, &StageName::name) > 0)

@@ -14,7 +14,7 @@ namespace cuboct {
 namespace {
 
 using Couplings = Eigen::Matrix<double, Eigen::Dynamic, 6>;
-constexpr Eigen::Index kDense = 450;  // degrees of freedom
+constexpr Eigen::Index kDenseFreedoms = 450;  // degrees of freedom
 
 [[noreturn]] void no_minimum(const std::string& why) {
   throw std::runtime_error("the cell is at no minimum of its energy: " + why);
@@ -105,7 +105,7 @@ ElasticTensor elastic_tensor(const Rule& rule, const CrystalCell& cell) {
   if (!couplings.isZero(0)) {
     const Eigen::SparseMatrix<double> k = force_constants(bonds, cell.x.size());
     const Couplings moved =
-        k.rows() <= kDense ? solve_dense(Eigen::MatrixXd(k), couplings) : solve_sparse(k, couplings);
+        k.rows() <= kDenseFreedoms ? solve_dense(Eigen::MatrixXd(k), couplings) : solve_sparse(k, couplings);
     c -= couplings.transpose() * moved / volume;
   }
   out.born = stress_strain(out.born, out.stress);

@@ -50,11 +50,11 @@ struct Mode {
   Eigen::VectorXd y;  // of length 1
 };
 
-constexpr Eigen::Index kDense = 64;  // rows up to which a full decomposition is as quick
+constexpr Eigen::Index kDenseRows = 64;  // rows up to which a full decomposition is as quick
 
 // The largest eigenvalue; `start` is where the iterations begin.
 Mode largest(const Combined& m, const Eigen::VectorXd& start, double tolerance) {
-  if (m.rows() <= kDense) {
+  if (m.rows() <= kDenseRows) {
     const auto [values, vectors] = eigensystem(m.dense());
     const Eigen::Index last = m.rows() - 1;
     return {values[last], vectors.col(last)};

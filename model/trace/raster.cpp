@@ -17,10 +17,10 @@
 namespace cuboct {
 namespace {
 
-constexpr char kFormat[] = "cuboct rasters";
+constexpr char kRasterFormat[] = "cuboct rasters";
 // Along an axis, of what is read; twice what a run writes of its longest, whose ends may fly apart.
 constexpr hsize_t kMostPixels = 1 << 16;
-constexpr uint32_t kVersion = 3;
+constexpr uint32_t kRasterVersion = 3;
 constexpr double kTouch = 1e-6;  // pixels: rounding, at the edge of a pixel
 
 struct Extent {
@@ -221,8 +221,8 @@ struct RasterWriter::Impl {
   void finish() {
     sets.clear();
     out.reserve(kSlack);
-    out.text(out.root(), "format", kFormat);
-    out.number<uint32_t>(out.root(), "version", kVersion);
+    out.text(out.root(), "format", kRasterFormat);
+    out.number<uint32_t>(out.root(), "version", kRasterVersion);
     out.text(out.root(), "title", head.title);
     out.number<uint32_t>(out.root(), "strain_axis", static_cast<uint32_t>(head.strain_axis));
     out.number<uint32_t>(out.root(), "right", static_cast<uint32_t>(grid.right));
@@ -273,12 +273,12 @@ void RasterWriter::finish() {
 
 Rasters read_rasters(const std::string& path) {
   const hdf5::Reader in(path, "rasters file");
-  if (!in.has_attribute(in.root(), "format") || in.text(in.root(), "format") != kFormat)
+  if (!in.has_attribute(in.root(), "format") || in.text(in.root(), "format") != kRasterFormat)
     throw InputError(fmt::format("{} holds no rasters", path),
                      "'cuboct run SCENE --out DIR' makes DIR/rasters.h5");
-  if (const auto version = in.number<uint32_t>(in.root(), "version"); version != kVersion)
+  if (const auto version = in.number<uint32_t>(in.root(), "version"); version != kRasterVersion)
     throw InputError(
-        fmt::format("{} has version {} of the format, this cuboct reads {}", path, version, kVersion));
+        fmt::format("{} has version {} of the format, this cuboct reads {}", path, version, kRasterVersion));
   Rasters rasters;
   rasters.title = in.text(in.root(), "title");
   RasterGrid& grid = rasters.grid;

@@ -25,8 +25,8 @@ using hdf5::Handle;
 using hdf5::Reader;
 using hdf5::Writer;
 
-constexpr char kFormat[] = "cuboct trace";
-constexpr uint32_t kVersion = 2;
+constexpr char kTraceFormat[] = "cuboct trace";
+constexpr uint32_t kTraceVersion = 2;
 
 // Of a group's datasets that grow frame by frame.
 constexpr uint64_t kSlack = 1 << 16;  // bytes of the disk for a frame's share of indices and headers
@@ -436,8 +436,8 @@ void TraceWriter::finish(const Trace& trace) {
   {
     out.reserve(bytes_of(trace) + (impl_->frames ? impl_->frames->pending() : 0) +
                 (impl_->bodies ? impl_->bodies->pending() : 0));
-    out.text(out.root(), "format", kFormat);
-    out.number<uint32_t>(out.root(), "version", kVersion);
+    out.text(out.root(), "format", kTraceFormat);
+    out.number<uint32_t>(out.root(), "version", kTraceVersion);
     out.text(out.root(), "engine", trace.engine);
     out.text(out.root(), "plan_hash", fmt::format("{:016x}", trace.plan_hash));
     out.number<uint64_t>(out.root(), "nodes", trace.nodes);
@@ -509,11 +509,11 @@ namespace {
 
 Trace read_rest(const Reader& in) {
   const std::string& path = in.path();
-  if (in.text(in.root(), "format") != kFormat) throw InputError(in.missing("attribute", "format"));
+  if (in.text(in.root(), "format") != kTraceFormat) throw InputError(in.missing("attribute", "format"));
   const auto version = in.number<uint32_t>(in.root(), "version");
-  if (version != kVersion)
-    throw InputError(
-        fmt::format("{} is a trace of version {}; this program reads version {}", path, version, kVersion));
+  if (version != kTraceVersion)
+    throw InputError(fmt::format("{} is a trace of version {}; this program reads version {}", path, version,
+                                 kTraceVersion));
   Trace trace;
   trace.engine = in.text(in.root(), "engine");
   trace.plan_hash = hash_in(in);

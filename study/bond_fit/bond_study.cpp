@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "model/base/atom_units.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/scene/file_kind.h"
@@ -14,8 +15,6 @@
 namespace cuboct::bond_fit {
 namespace {
 
-constexpr double kElectronVolt = 1.602176634e-19;                                  // J
-constexpr double kAngstrom = 1e-10;                                                // m
 constexpr double kPressure = kElectronVolt / (kAngstrom * kAngstrom * kAngstrom);  // Pa of eV/angstrom^3
 constexpr double kMassUnit = kElectronVolt * 1e-24 / (kAngstrom * kAngstrom);      // kg of eV ps^2/angstrom^2
 

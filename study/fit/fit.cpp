@@ -28,7 +28,7 @@ constexpr double kLeastDifference = 0.005;
 constexpr double kFar = 0.05;
 
 // A pressure at rest, over the strength, that counts as none.
-constexpr double kAtRest = 0.01;
+constexpr double kPressureAtRest = 0.01;
 
 LawPoints law_of(const FitStudy& study, const Sample& sample) {
   return points_of(draw(parameters_of(study, sample), study.scale));
@@ -139,7 +139,7 @@ std::vector<std::string> notes_of(const FitStudy& study, const Fit& fit) {
         "the best law is still {:.3g} % off: perhaps no law within these bounds makes such a curve",
         100 * fit.best->error));
   const double pressure = packing_pressure(study, parameters_of(study, fit.best->sample));
-  if (std::abs(pressure) > kAtRest * study.target.strength)
+  if (std::abs(pressure) > kPressureAtRest * study.target.strength)
     notes.push_back(
         fmt::format("the undeformed packing is under a pressure of {:.3g} Pa with the best law: its reach of "
                     "{:g} pitches "

@@ -19,7 +19,7 @@ namespace {
 constexpr size_t kEven = 201;
 constexpr double kElasticStrain = 0.005;
 // A stress at strain 0, over the strength, that counts as none.
-constexpr double kAtRest = 0.01;
+constexpr double kStressAtRest = 0.01;
 // Beyond every matter.
 constexpr double kMostStress = 1e18, kMostStrain = 100;
 
@@ -43,7 +43,7 @@ void check(Target& target, const Fail& fail) {
   target.strength = *std::ranges::max_element(stress);
   if (!(target.strength > 0))
     fail(0, fmt::format("the largest stress is {:g} Pa: this is no curve of tension", target.strength), "");
-  if (strain[0] == 0 && std::abs(stress[0]) > kAtRest * target.strength)
+  if (strain[0] == 0 && std::abs(stress[0]) > kStressAtRest * target.strength)
     fail(0, fmt::format("the stress at strain 0 is {:g} Pa: a body at rest has none", stress[0]),
          "take the stress of the start off, or let strains count from where it is 0");
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/base/atom_units.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/scene/file_kind.h"
@@ -15,8 +16,6 @@
 namespace cuboct::learn {
 namespace {
 
-constexpr double kElectronVolt = 1.602176634e-19;                              // J
-constexpr double kAngstrom = 1e-10, kPicosecond = 1e-12;                       // m, s
 constexpr double kMassUnit = kElectronVolt * 1e-24 / (kAngstrom * kAngstrom);  // kg
 constexpr int kMostCells = 400, kMostPoints = 100, kMostFrames = 1000, kMostSeeds = 100, kMostDegree = 12;
 

@@ -7,16 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "model/base/atom_units.h"
 #include "model/base/vec.h"
 #include "model/bond_order/atom_cell.h"
 #include "model/coarse/coarse_grain.h"
 #include "study/learn/learn_study.h"
 
 namespace cuboct::learn {
-
-inline constexpr double kElectronVolt = 1.602176634e-19;  // J
-inline constexpr double kAngstrom = 1e-10;                // m
-inline constexpr double kPicosecond = 1e-12;              // s
 
 // Points in rows along x and y, (i + 1/2) spacings from the lower corner; the middle of the sheet is at 0.
 struct Grid {

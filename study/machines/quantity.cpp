@@ -12,22 +12,22 @@
 namespace cuboct::study {
 namespace {
 
-constexpr Dimension kNone{}, kTime{{0, 0, 1}}, kEnergy{{1, 2, -2}}, kPower{{1, 2, -3}}, kArea{{0, 2, 0}};
+constexpr Dimension kNoUnit{}, kTime{{0, 0, 1}}, kEnergy{{1, 2, -2}}, kPower{{1, 2, -3}}, kArea{{0, 2, 0}};
 
 // By MachineQuantity.
 constexpr std::array<QuantityName, kMachineQuantities> kNames{{
-    {"cycles", "", "cycles per step", kNone},
-    {"steps/s", "", "steps per second", kNone, true},
+    {"cycles", "", "cycles per step", kNoUnit},
+    {"steps/s", "", "steps per second", kNoUnit, true},
     {"time", "s", "seconds of a step", kTime},
     {"energy", "J", "joules per particle-step", kEnergy},
     {"power", "W", "watts", kPower},
     {"area", "m^2", "area, mm²", kArea},
-    {"nodes", "", "nodes", kNone},
-    {"LUT", "", "LUTs", kNone},
-    {"FF", "", "flip-flops", kNone},
-    {"DSP", "", "multipliers of the device", kNone},
-    {"BRAM", "", "blocks of memory", kNone},
-    {"error", "", "largest relative error of a figure", kNone},
+    {"nodes", "", "nodes", kNoUnit},
+    {"LUT", "", "LUTs", kNoUnit},
+    {"FF", "", "flip-flops", kNoUnit},
+    {"DSP", "", "multipliers of the device", kNoUnit},
+    {"BRAM", "", "blocks of memory", kNoUnit},
+    {"error", "", "largest relative error of a figure", kNoUnit},
 }};
 
 std::string number_of(double x) {

@@ -52,7 +52,7 @@ TEST_P(TersoffScenePeer, HasItsEnergyAndForces) {
   const RealFrame frame = std::get<RealFrame>(run.frame(true));
   Asked asked;
   asked.energies = true;
-  const double energy = run.read(asked).energies.potential / kElectronvolt;
+  const double energy = run.read(asked).energies.potential / kElectronVolt;
 
   test::LammpsAtoms atoms{.box = {}, .x = {}, .element = {}};
   for (int a = 0; a < 3; ++a) {
@@ -72,7 +72,7 @@ TEST_P(TersoffScenePeer, HasItsEnergyAndForces) {
   double largest = 0, worst = 0;
   for (size_t i = 0; i < frame.x.size(); ++i) {
     largest = std::max(largest, expected.f[i].norm());
-    worst = std::max(worst, (frame.force[i] * (kAngstrom / kElectronvolt) - expected.f[i]).norm());
+    worst = std::max(worst, (frame.force[i] * (kAngstrom / kElectronVolt) - expected.f[i]).norm());
   }
   ASSERT_GT(largest, 0.5);  // eV/angstrom
   EXPECT_LT(worst, 1e-9 * largest);

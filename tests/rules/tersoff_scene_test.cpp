@@ -17,7 +17,7 @@
 namespace cuboct {
 namespace {
 
-constexpr double kEv = kElectronvolt, kA = kAngstrom;
+constexpr double kEv = kElectronVolt, kA = kAngstrom;
 
 std::string carbon(const std::string& place, const std::string& more = "",
                    const std::string& rule = "potential = \"c_1989\"") {
