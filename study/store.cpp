@@ -250,7 +250,7 @@ Store::Store(const std::string& path, const Study& study) {
     // With a write-ahead log a row that was put survives the process; only a loss of power may take the last
     // ones.
     impl_->database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
-    impl_->database.run(kTables);
+    impl_->database.run(fmt::format("BEGIN; {} COMMIT", kTables));  // all, or none
     impl_->check();
   } catch (const InputError& error) {
     close(lock);

@@ -250,8 +250,7 @@ TEST(Store, APointWithoutItsFiguresIsRefused) {
     store.put_errors(outcome);
     EXPECT_EQ(store.errors(study.points[0])->errors.values, std::vector{0.5});
   }
-  rows(path, "DROP TABLE figures");
-  const Store store(path, study);
+  rows(path, "DELETE FROM figures");
   const auto refusal = [](const std::function<void()>& read) {
     try {
       read();
@@ -263,8 +262,14 @@ TEST(Store, APointWithoutItsFiguresIsRefused) {
   const std::string expected = path +
                                ": a point has 0 figures, the study 1\n  hint: it is damaged: take another "
                                "--out DIR, or remove the file and begin again";
-  EXPECT_EQ(refusal([&] { store.errors(study.points[0]); }), expected);
-  EXPECT_EQ(refusal([&] { store.results(); }), expected);
+  EXPECT_EQ(refusal([&] { Store(path, study).errors(study.points[0]); }), expected);
+  EXPECT_EQ(refusal([&] { Store(path, study).results(); }), expected);
+  rows(path, "DROP TABLE figures");
+  EXPECT_EQ(
+      refusal([&] { Store(path, study); }),
+      path +
+          " holds no results of a study as cuboct keeps them\n  hint: 'cuboct explore' makes such a file: "
+          "remove this one and begin again, or take another");
 }
 
 // What SQLite would run, or never come to the end of.
