@@ -64,6 +64,7 @@ Items emit_one(const EmitOptions& options) {
     Emission emission = options.emission;
     if (!emission.board.name.empty() && !options.unchecked)
       check_board(options.input, plan, loaded.setup.initial, emission.board);
+    check_emission(plan, emission);  // cycles are counted for long
     emission.arch = text_of(plan.arch);
     emission.counted = counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
     emit_rtl(plan, loaded.setup.initial, options.out, emission);

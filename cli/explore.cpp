@@ -93,6 +93,9 @@ int explore(const ExploreOptions& options) {
   const bool budget = !options.error.empty();
   if (budget) check_budget(study, options.error, options.figure);
   if (!budget && !options.figure.empty()) throw InputError("--figure names the figure of --error E");
+  if (!budget && study.points.empty())
+    throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
+                     "--error asks its [search]");
   const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
   for (const std::string& file : options.add) study::Store::check(file, study);
   const DirectoryLock lock(out, "cuboct explore");
@@ -105,9 +108,6 @@ int explore(const ExploreOptions& options) {
     if (budget)
       return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs},
                         options.answer);
-    if (study.points.empty())
-      throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
-                       "--error asks its [search]");
     runner.run();
   } catch (const study::Interrupted&) {
     throw Failed("interrupted; the same command goes on where it was");

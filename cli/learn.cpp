@@ -106,6 +106,7 @@ void run(const LearnOptions& options) {
   const learn::LearnStudy study = learn::read_learn_study(options.study);
   const std::string out =
       options.out.empty() ? std::filesystem::path(options.study).stem().string() + ".learn" : options.out;
+  learn::check_loads(study);
   const DirectoryLock lock(out, "cuboct learn");
   check_writable(out + "/summary.json");
   catch_interrupts();

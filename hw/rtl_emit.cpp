@@ -136,7 +136,9 @@ void emit_node(const Plan& plan, const std::string& dir) {
   write(dir, files);
 }
 
-void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission) {
+namespace {
+
+RtlDesign legal_design(const Plan& plan, const Emission& emission) {
   const BoardChoice& board = emission.board;
   if (!emission.prefix.empty()) check_prefix(emission.prefix);
   if (plan.arch.boards.several())
@@ -149,6 +151,16 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, co
   if (!board.bus.empty()) legalise_bus(plan, board);
   if (!board.name.empty() || !board.bus.empty())
     if (board.velocities) design.moved = moved_types(plan.rule);
+  return design;
+}
+
+}  // namespace
+
+void check_emission(const Plan& plan, const Emission& emission) { legal_design(plan, emission); }
+
+void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission) {
+  const BoardChoice& board = emission.board;
+  const RtlDesign design = legal_design(plan, emission);
   Files files;
   add_node(files, design);
   for (const RtlSource& source : rtl_lattice_library())

@@ -27,6 +27,8 @@ struct Emission {
 // needs beside the lattice, pins, and files.f of all. With a bus likewise bus/, with the top module
 // cuboct_axi4lite or cuboct_wishbone. Same plan, same bytes. Throws InputError.
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission = {});
+// Throws InputError where emit_rtl would refuse the plan, or the choice of a board, a bus or a prefix.
+void check_emission(const Plan& plan, const Emission& emission);
 // Throws InputError where emit_rtl would refuse the directory as another's.
 void check_emit_directory(const std::string& dir);
 

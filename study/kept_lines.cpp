@@ -21,14 +21,19 @@ KeptLines::KeptLines(std::string path, uint64_t hash, const std::string& what,
   const auto lines = lines_of(text);
   if (lines.front() != head_)
     throw InputError(fmt::format("{} holds {}", path_, what), "take another --out DIR, or remove this one");
+  const auto refuse = [this] {
+    throw InputError(fmt::format("{}: line {} is none of its results", path_, lines_.size() + 2),
+                     "it is damaged: take another --out DIR, or remove the file and begin again");
+  };
   try {
     for (size_t k = 1; k + 1 < lines.size(); ++k) {
       take(nlohmann::json::parse(lines[k]));
       lines_.emplace_back(lines[k]);
     }
   } catch (const nlohmann::json::exception&) {
-    throw InputError(fmt::format("{}: line {} is none of its results", path_, lines_.size() + 2),
-                     "it is damaged: take another --out DIR, or remove the file and begin again");
+    refuse();
+  } catch (const UnfitLine&) {
+    refuse();
   }
 }
 

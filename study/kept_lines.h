@@ -11,11 +11,14 @@
 
 namespace cuboct::study {
 
+// Thrown for a line that is none of a study's results.
+struct UnfitLine {};
+
 class KeptLines {
  public:
-  // Calls `take` with each line of the file, where there is one; its nlohmann::json::exception is told as an
-  // InputError that names the line. `hash`: of all that the results hang on. Throws InputError where the file
-  // has another one; `what` says what it then holds: "the fit of another scene".
+  // Calls `take` with each line of the file, where there is one; its nlohmann::json::exception and UnfitLine
+  // are told as an InputError that names the line. `hash`: of all that the results hang on. Throws InputError
+  // where the file has another one; `what` says what it then holds: "the fit of another scene".
   KeptLines(std::string path, uint64_t hash, const std::string& what,
             const std::function<void(const nlohmann::json&)>& take);
 

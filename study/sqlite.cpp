@@ -77,7 +77,8 @@ void Database::run(const std::string& sql) {
 void Database::check(const std::string& tables) const {
   Database own(":memory:", true);
   own.run(tables);
-  if (!std::ranges::includes(schema_of(own), schema_of(*this)))
+  const std::set<std::string> found = schema_of(*this);
+  if (!found.empty() && found != schema_of(own))
     throw InputError(fmt::format("{} holds no results of a study as cuboct keeps them", name_), kHint);
   Query pages(*this, "PRAGMA quick_check(1)");
   if (!pages.next() || pages.text() != "ok") throw InputError(fmt::format("{} is damaged", name_), kHint);

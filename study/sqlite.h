@@ -22,8 +22,8 @@ class Database {
 
   void run(const std::string& sql);
   // Of a file that may be a stranger's, before anything else is asked: what its schema says runs in our
-  // statements, and a tree of pages that meets itself has no end. InputError where it has another table than
-  // `tables` makes, any view, trigger or index beside those, or pages that do not fit together.
+  // statements, and a tree of pages that meets itself has no end. InputError where it has anything and not
+  // just the tables that `tables` makes, or pages that do not fit together.
   void check(const std::string& tables) const;
   sqlite3* handle() const { return handle_; }
   [[noreturn]] void fail() const;

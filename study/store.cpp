@@ -48,6 +48,8 @@ constexpr const char* kPointColumns =
 constexpr const char* kSpeedColumns =
     "point, numbers, settings, particle_steps, simulated_seconds, spread, repeats, machine";
 
+constexpr const char* kDamaged = "it is damaged: take another --out DIR, or remove the file and begin again";
+
 const std::vector<std::string> kStatuses{"done", "unstable", "refused"};
 const std::vector<std::string> kIntegrators{"euler", "verlet"};
 
@@ -180,7 +182,7 @@ struct Store::Impl {
   Impl(const std::string& path, const Study& study) : study(study), path(path), database(path, true) {}
 
   void check();
-  void read_figures(Outcome& outcome, const std::string& numbers) const;
+  Outcome read_outcome(Query& point) const;  // with its figures
   std::string meta(const std::string& name) const {
     Query row(database, "SELECT value FROM meta WHERE name = ?");
     return row.bind(name).next() ? row.text() : "";
@@ -218,13 +220,19 @@ void Store::Impl::check() {
   machine.bind(here).done();
 }
 
-void Store::Impl::read_figures(Outcome& outcome, const std::string& numbers) const {
+// A row of `points` has a row of `figures` for each of the study's, measured or not.
+Outcome Store::Impl::read_outcome(Query& point) const {
+  Outcome outcome = read_point(point);
   Query row(database, "SELECT value, error FROM figures WHERE numbers = ? ORDER BY figure");
-  row.bind(numbers);
+  row.bind(outcome.settings.numbers_key());
   while (row.next()) {
     outcome.errors.values.push_back(row.real());
     outcome.errors.figures.push_back(row.real());
   }
+  if (const size_t found = outcome.errors.figures.size(); found != study.figures.size())
+    throw InputError(
+        fmt::format("{}: a point has {} figures, the study {}", path, found, study.figures.size()), kDamaged);
+  return outcome;
 }
 
 Store::Store(const std::string& path, const Study& study) {
@@ -242,7 +250,7 @@ Store::Store(const std::string& path, const Study& study) {
     // With a write-ahead log a row that was put survives the process; only a loss of power may take the last
     // ones.
     impl_->database.run("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
-    impl_->database.run(kTables);
+    impl_->database.run(fmt::format("BEGIN; {} COMMIT", kTables));  // all, or none
     impl_->check();
   } catch (const InputError& error) {
     close(lock);
@@ -309,9 +317,8 @@ std::optional<Outcome> Store::errors(const Settings& settings) const {
   const std::lock_guard guard(impl_->mutex);
   Query row(impl_->database, fmt::format("SELECT {} FROM points WHERE numbers = ?", kPointColumns));
   if (!row.bind(settings.numbers_key()).next()) return std::nullopt;
-  Outcome outcome = read_point(row);
+  Outcome outcome = impl_->read_outcome(row);
   outcome.settings = settings;
-  impl_->read_figures(outcome, settings.numbers_key());
   return outcome;
 }
 
@@ -433,8 +440,7 @@ Results Store::results() const {
     if (!shown.insert(key).second) continue;
     Query row(impl_->database, fmt::format("SELECT {} FROM points WHERE numbers = ?", kPointColumns));
     Outcome outcome;
-    if (row.bind(numbers).next()) outcome = read_point(row);
-    impl_->read_figures(outcome, numbers);
+    if (row.bind(numbers).next()) outcome = impl_->read_outcome(row);
     outcome.settings = settings_of(settings);
     outcome.speed = read_speed(speeds);
     shown_numbers.insert(numbers);
@@ -442,11 +448,9 @@ Results Store::results() const {
   }
   Query points(impl_->database, fmt::format("SELECT {} FROM points ORDER BY numbers", kPointColumns));
   while (points.next()) {
-    Outcome outcome = read_point(points);
-    const std::string numbers = outcome.settings.numbers_key();
-    if (!shown_numbers.insert(numbers).second) continue;
-    impl_->read_figures(outcome, numbers);
-    results.outcomes.push_back(std::move(outcome));
+    Outcome outcome = impl_->read_outcome(points);
+    if (shown_numbers.insert(outcome.settings.numbers_key()).second)
+      results.outcomes.push_back(std::move(outcome));
   }
   return results;
 }

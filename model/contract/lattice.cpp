@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <tuple>
+#include <unordered_set>
 
 namespace cuboct {
 namespace {
@@ -14,6 +15,14 @@ void sort_unique(std::vector<Cell>& cells) {
   if (!std::is_sorted(cells.begin(), cells.end(), before)) std::sort(cells.begin(), cells.end(), before);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
 }
+
+struct CellHash {
+  size_t operator()(const Cell& c) const {
+    uint64_t hash = 0;
+    for (const int32_t along : c) hash = (hash ^ static_cast<uint32_t>(along)) * 0x9e3779b97f4a7c15;
+    return hash ^ hash >> 32;
+  }
+};
 
 constexpr int bit_of(int dx, int dy, int dz) { return 13 + dx + 3 * dy + 9 * dz; }
 
@@ -145,24 +154,33 @@ void Lattice::close() {
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
         if (dy != 0 || dz != 0) missing_between(row, dz, dy, missing);
+  // Kept apart from the sorted cells until the last round: along a needle there are as many rounds as cells.
+  std::unordered_set<Cell, CellHash> added;
+  const auto beside = [this](const Cell& c, int bit) {
+    return wrapped({c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1});
+  };
   for (sort_unique(missing); !missing.empty(); sort_unique(missing)) {
-    const auto middle = static_cast<ptrdiff_t>(cells_.size());
-    cells_.insert(cells_.end(), missing.begin(), missing.end());
-    std::inplace_merge(cells_.begin(), cells_.begin() + middle, cells_.end(), before);
-    index_rows();
+    added.insert(missing.begin(), missing.end());
     std::vector<Cell> next;
     for (const Cell& c : missing) {
-      const uint32_t present = present_around(c);
+      uint32_t present = present_around(c);
+      for (int bit = 0; bit < 27; ++bit)
+        if ((present >> bit & 1) == 0 && added.contains(beside(c, bit))) present |= 1u << bit;
       uint32_t needed = 0;
       for (int bit = 0; bit < 27; ++bit)
         if ((present >> bit & 1) != 0) needed |= kWays[static_cast<size_t>(bit)];
       needed &= ~present;
       for (int bit = 0; needed >> bit != 0; ++bit)
-        if ((needed >> bit & 1) != 0)
-          next.push_back(wrapped({c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1}));
+        if ((needed >> bit & 1) != 0) next.push_back(beside(c, bit));
     }
     missing = std::move(next);
   }
+  if (added.empty()) return;
+  const auto middle = static_cast<ptrdiff_t>(cells_.size());
+  cells_.insert(cells_.end(), added.begin(), added.end());
+  std::sort(cells_.begin() + middle, cells_.end(), before);
+  std::inplace_merge(cells_.begin(), cells_.begin() + middle, cells_.end(), before);
+  index_rows();
 }
 
 void Lattice::link() {

@@ -267,7 +267,11 @@ int64_t ConfigValue::integer(int64_t low, int64_t high) const {
 }
 
 std::string ConfigValue::string() const {
+  constexpr size_t kLongest = 4096;  // bytes, as of a path in Linux; names and titles are shorter
   if (node_->kind != Kind::string) wants("a string");
+  if (node_->text.size() > kLongest)
+    fail(fmt::format("'{}' is a text of {} bytes: at most {} are read", node_->key, node_->text.size(),
+                     kLongest));
   return node_->text;
 }
 

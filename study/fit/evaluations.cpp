@@ -28,8 +28,9 @@ Evaluation evaluation_of(const nlohmann::json& line) {
 
 Evaluations::Evaluations(const std::string& directory, const FitStudy& study)
     : kept_(directory + "/evaluations.jsonl", study.hash, "the fit of another scene, target or search",
-            [this](const nlohmann::json& line) {
+            [this, &study](const nlohmann::json& line) {
               Evaluation evaluation = evaluation_of(line);
+              if (evaluation.stress.size() != study.target.even_strain.size()) throw study::UnfitLine();
               std::vector<double> sample = evaluation.sample;
               known_.emplace(std::move(sample), std::move(evaluation));
             }) {}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/learn/crack_data.h"
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 
@@ -39,6 +40,25 @@ std::string text_of(const FractureSample& sample, size_t load) {
        {"atoms", json_array(sample.atoms, [](const AtomFrame& frame) { return text_of(frame); })}});
 }
 
+// Whether it has all that a sample of the study has.
+bool fits(const FractureSample& sample, const LearnStudy& study, const std::vector<Grid>& grids) {
+  const size_t frames = static_cast<size_t>(study.fracture.frames) + 1;
+  bool whole = sample.density.size() == grids.size() && sample.velocity.size() == grids.size() &&
+               sample.frames.size() == grids.size();
+  for (size_t g = 0; whole && g < grids.size(); ++g) {
+    const size_t points = grids[g].size();
+    whole =
+        sample.density[g].size() == points && sample.velocity[g].size() == points &&
+        sample.frames[g].size() == frames && std::ranges::all_of(sample.frames[g], [&](const Frame& frame) {
+          return frame.u.size() == points && frame.acceleration.size() == points && frame.b.size() == points;
+        });
+  }
+  return whole && std::ranges::all_of(sample.atoms, [&](const AtomFrame& atoms) {
+           return atoms.frame >= 0 && static_cast<size_t>(atoms.frame) < frames &&
+                  atoms.x.size() == atoms.u.size();
+         });
+}
+
 FractureSample sample_of(const nlohmann::json& line) {
   FractureSample out;
   out.seconds = line.at("seconds").get<double>();
@@ -61,10 +81,14 @@ FractureSample sample_of(const nlohmann::json& line) {
 std::array<FractureSample, 2> cracked_sheets(const LearnStudy& study, const std::string& directory,
                                              int jobs) {
   std::array<std::optional<FractureSample>, 2> known;
-  study::KeptLines kept(
-      directory + "/cracks.jsonl", study.fracture_hash, "the cracks of another sheet or load",
-      [&](const nlohmann::json& line) { known[line.at("name") == kNames[0] ? 0 : 1] = sample_of(line); });
   const AtomCell sheet = resting_sheet(study.sheet);
+  const std::vector<Grid> grids = fracture_grids(study, sheet);
+  study::KeptLines kept(directory + "/cracks.jsonl", study.fracture_hash,
+                        "the cracks of another sheet or load", [&](const nlohmann::json& line) {
+                          FractureSample sample = sample_of(line);
+                          if (!fits(sample, study, grids)) throw study::UnfitLine();
+                          known[line.at("name") == kNames[0] ? 0 : 1] = std::move(sample);
+                        });
   std::mutex guard;
   std::vector<study::Piece> pieces;
   for (const size_t load : {0, 1}) {

@@ -82,9 +82,12 @@ void check_cracks(const LearnStudy& study) {
   const AtomCell sheet = resting_sheet(study.sheet);
   const double edge = sheet.box.edges(1, 1);
   if (study.fracture.slit > edge - study.sheet.bond)
-    throw InputError(fmt::format("{}: a slit of {:g} angstrom parts the sheet, whose edge is {:.3g} angstrom",
-                                 study.path, study.fracture.slit, edge),
-                     "a shorter fracture.slit, or more cells");
+    throw placed(study,
+                 InputError(fmt::format("a slit of {:g} angstrom parts the sheet, whose edge is {:.3g} "
+                                        "angstrom",
+                                        study.fracture.slit, edge),
+                            "a shorter 'slit', or more cells")
+                     .about({"fracture.slit", "fracture"}));
   for (const Grid& grid : fracture_grids(study, sheet)) Symbol(grid, study.stretch.horizon);
 }
 

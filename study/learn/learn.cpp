@@ -21,15 +21,26 @@ namespace {
 
 constexpr double kHeld = -1e-4;  // a constraint that is less below 0 holds
 
+// The sample in a kept line, of a grid of so many points. A field of another length, or one of zeros, is
+// none.
+StaticSample sample_of(const nlohmann::json& line, size_t points) {
+  const StaticSample sample{field_of(line.at("u")), field_of(line.at("b")), line.at("strain")};
+  const auto fits = [&](const std::vector<Vec3>& field) {
+    const auto zero = [](const Vec3& at) { return at.isZero(0); };
+    return field.size() == points && !std::ranges::all_of(field, zero);
+  };
+  if (!fits(sample.u) || !fits(sample.b)) throw study::UnfitLine();
+  return sample;
+}
+
 std::vector<StaticSample> samples_of(const LearnStudy& study, const AtomCell& sheet,
                                      const std::vector<StaticLoad>& loads, const std::string& directory,
                                      int jobs) {
   std::map<std::string, StaticSample> known;
+  const size_t points = grid_of(study, sheet, study.grid.points).size();
   study::KeptLines kept(
       directory + "/samples.jsonl", study.static_hash, "the samples of another sheet or load",
-      [&](const nlohmann::json& line) {
-        known[line.at("name")] = {field_of(line.at("u")), field_of(line.at("b")), line.at("strain")};
-      });
+      [&](const nlohmann::json& line) { known[line.at("name")] = sample_of(line, points); });
   std::mutex guard;
   std::vector<study::Piece> pieces;
   for (const StaticLoad& load : loads) {
@@ -68,6 +79,17 @@ size_t best_of(const std::vector<Tried>& tried) {
 }
 
 }  // namespace
+
+void check_loads(const LearnStudy& study) {
+  const std::vector<StaticLoad> loads = static_loads(study, resting_sheet(study.sheet));
+  const StaticLoad& least = *std::ranges::min_element(loads, {}, &StaticLoad::size);
+  if (study.still.force < least.size) return;
+  throw placed(study, InputError(fmt::format("a sheet whose forces are below {:.3g} eV/angstrom is at rest, "
+                                             "and '{}' loads an atom with {:.3g} eV/angstrom at most",
+                                             study.still.force, least.name, least.size),
+                                 "a smaller 'force'")
+                          .about({"static.force"}));
+}
 
 Learned learn(const LearnStudy& study, const std::string& directory, int jobs) {
   const AtomCell sheet = resting_sheet(study.sheet);

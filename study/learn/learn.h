@@ -20,6 +20,8 @@ struct Learned {
   size_t best = 0;               // of those: the least validation residual among those whose constraints hold
   std::vector<KernelFit> drawn;  // the best again, samples drawn anew: its spread
 };
+// InputError where a sheet would be at rest under a load before it has moved. To be asked before all work.
+void check_loads(const LearnStudy& study);
 // DIR/samples.jsonl keeps the samples. Throws study::Interrupted, InputError where a horizon has too few
 // points.
 Learned learn(const LearnStudy& study, const std::string& directory, int jobs);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "model/base/atom_units.h"
+#include "model/base/error.h"
 #include "model/base/vec.h"
 #include "model/bond_order/atom_cell.h"
 #include "model/coarse/coarse_grain.h"
@@ -33,6 +34,9 @@ struct Grid {
 // A sheet at rest without stress, its middle at 0. Angstrom.
 AtomCell resting_sheet(const SheetInput& sheet);
 Grid grid_of(const LearnStudy& study, const AtomCell& sheet, int points);
+
+// The error with the place of the study's key that it is about.
+InputError placed(const LearnStudy& study, const InputError& error);
 
 // A load on a sheet that repeats, and what it does.
 struct StaticLoad {

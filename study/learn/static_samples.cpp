@@ -82,6 +82,10 @@ double largest_strain(const AtomCell& sheet, const std::vector<Vec3>& u, double 
 
 }  // namespace
 
+InputError placed(const LearnStudy& study, const InputError& error) {
+  return parse_config(read_config_text(study.path), study.path).places().placed(error);
+}
+
 std::vector<StaticLoad> static_loads(const LearnStudy& study, const AtomCell& sheet) {
   const Vec3 extent = sheet.box.edges.diagonal();
   std::vector<StaticLoad> loads;
@@ -108,9 +112,10 @@ StaticSample rest_under(const LearnStudy& study, const AtomCell& sheet, const St
   StaticSample out;
   out.strain = largest_strain(sheet, u, study.sheet.bond);
   if (out.strain > study.still.most)
-    throw InputError(fmt::format("{}: a bond is strained by {:.3g} %, more than {:g} %", load.name,
-                                 100 * out.strain, 100 * study.still.most),
-                     "a smaller static.strain");
+    throw placed(study, InputError(fmt::format("{}: a bond is strained by {:.3g} %, more than {:g} %",
+                                               load.name, 100 * out.strain, 100 * study.still.most),
+                                   "a smaller 'strain'")
+                            .about({"static.strain", "static"}));
   const Grid grid = grid_of(study, sheet, study.grid.points);
   std::vector<Vec3> x = sheet.x, b = forces;
   for (size_t i = 0; i < x.size(); ++i)
@@ -119,8 +124,7 @@ StaticSample rest_under(const LearnStudy& study, const AtomCell& sheet, const St
     const CoarseGrain grain(grid.coarse(true), x, std::vector<double>(x.size(), 1));
     out.u = grain.linear_mean(u), out.b = grain.density_of(b);
   } catch (const InputError& error) {
-    const ConfigTable file = parse_config(read_config_text(study.path), study.path);
-    throw file.places().placed(error.about({"grid.radius", "grid.points"}));
+    throw placed(study, error.about({"grid.radius", "grid.points"}));
   }
   return out;
 }

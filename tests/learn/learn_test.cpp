@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -170,6 +171,40 @@ TEST_F(LearnCommand, RefusesDiscsThatOverlap) {
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(cuboct::test::without_excerpt(answer.err),
             path + ":9:48: a disc of 25 angstrom is wider than half the sheet's edge, 39.42 angstrom\n");
+}
+
+// Nothing would move.
+TEST_F(LearnCommand, RefusesARestThatLoadsDoNotDisturb) {
+  const std::string path = study("[kernel]\nhorizons = [3]\n");
+  std::string text = cuboct::test::contents(path);
+  text.replace(text.find("waves = 1\n"), 10, "waves = 1\nforce = \"1 eV/angstrom\"\n");
+  std::ofstream(path) << text;
+  const auto answer = bench_.cuboct({"learn", path, "--out", bench_.path("none")});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(
+      cuboct::test::without_excerpt(answer.err),
+      path +
+          ":9:9: a sheet whose forces are below 1 eV/angstrom is at rest, and 'wave x 1 0' loads an atom "
+          "with 0.0324 eV/angstrom at most\n  hint: a smaller 'force'\n");
+  EXPECT_FALSE(std::filesystem::exists(bench_.path("none")));
+}
+
+// A kept line that holds no field of the study's grid, or a sheet that did not move.
+TEST_F(LearnCommand, RefusesKeptSamplesOfAnotherGrid) {
+  const std::string path = study("[kernel]\nhorizons = [3]\ndegrees = [5]\nseeds = 1\n");
+  ASSERT_EQ(bench_.cuboct({"learn", path, "--out", bench_.path("learned")}).code, 0);
+  const std::string kept = bench_.path("learned/samples.jsonl"), text = cuboct::test::contents(kept);
+  const std::string head = text.substr(0, text.find('\n') + 1);
+  for (const char* field : {"[1, 2]", "[]", "{\"a\": 1}"}) {
+    std::ofstream(kept) << head << "{\"name\":\"wave x 0 1\",\"strain\":0,\"u\":" << field
+                        << ",\"b\":" << field << "}\n";
+    const auto answer = bench_.cuboct({"learn", path, "--out", bench_.path("learned")});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.err,
+              kept +
+                  ": line 2 is none of its results\n  hint: it is damaged: take another --out DIR, or "
+                  "remove the file and begin again\n");
+  }
 }
 
 TEST_F(LearnCommand, RefusesAKernelWithoutPoints) {

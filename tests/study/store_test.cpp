@@ -238,6 +238,40 @@ TEST(Store, SaysOfAFileThatItIsNone) {
   EXPECT_EQ(refusal(whole), name + " is damaged" + hint);
 }
 
+TEST(Store, APointWithoutItsFiguresIsRefused) {
+  const SmallStudy files;
+  const Study study = read_study(files.study(kStudy));
+  const std::string path = files.path("results.db");
+  {
+    Store store(path, study);
+    Outcome outcome;
+    outcome.settings = study.points[0];
+    outcome.errors.values = outcome.errors.figures = {0.5};
+    store.put_errors(outcome);
+    EXPECT_EQ(store.errors(study.points[0])->errors.values, std::vector{0.5});
+  }
+  rows(path, "DELETE FROM figures");
+  const auto refusal = [](const std::function<void()>& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  const std::string expected = path +
+                               ": a point has 0 figures, the study 1\n  hint: it is damaged: take another "
+                               "--out DIR, or remove the file and begin again";
+  EXPECT_EQ(refusal([&] { Store(path, study).errors(study.points[0]); }), expected);
+  EXPECT_EQ(refusal([&] { Store(path, study).results(); }), expected);
+  rows(path, "DROP TABLE figures");
+  EXPECT_EQ(
+      refusal([&] { Store(path, study); }),
+      path +
+          " holds no results of a study as cuboct keeps them\n  hint: 'cuboct explore' makes such a file: "
+          "remove this one and begin again, or take another");
+}
+
 // What SQLite would run, or never come to the end of.
 TEST(Store, RunsNothingThatAnothersFileSays) {
   const SmallStudy files;

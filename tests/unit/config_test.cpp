@@ -107,6 +107,18 @@ TEST(Config, ChecksRangesAndKinds) {
   EXPECT_EQ(error_of("[t]\n", tables), "a.toml:1:1: 't' must be an array of tables\n  hint: write [[t]]");
 }
 
+TEST(Config, TextsAreNoLongerThanAPath) {
+  const auto read = [](const ConfigTable& root) { root.string_or("title", ""); };
+  EXPECT_EQ(error_of("title = \"" + std::string(4096, 'a') + "\"\n", read), "accepted");
+  EXPECT_EQ(error_of("b = 1\ntitle = \"" + std::string(4097, 'a') + "\"\n", read),
+            "a.toml:2:9: 'title' is a text of 4097 bytes: at most 4096 are read");
+  // A list of numbers has its own limits.
+  const auto numbers = [](const ConfigTable& root) { root.at("a").numbers(quantity::length); };
+  std::string list = "1";
+  for (int k = 0; k < 3000; ++k) list += ", 1";
+  EXPECT_EQ(error_of("a = \"[" + list + "] mm\"\n", numbers), "accepted");
+}
+
 TEST(Config, TextsAreUtf8) {
   const auto read = [](const ConfigTable& root) { root.string_or("a", ""); };
   EXPECT_EQ(error_of("\xEF\xBB\xBF"

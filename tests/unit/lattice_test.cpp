@@ -151,6 +151,18 @@ TEST(Lattice, IsTheClosureOfItsCells) {
   EXPECT_GT(rings, 100u);
 }
 
+// Beside a row of cells stands one at its end: each cell on the way along the row asks for the next.
+TEST(Lattice, ClosesANeedleWithoutARoundForAllCells) {
+  constexpr int kLength = 100'000;
+  std::vector<Cell> cells{{0, 0, 0}};
+  for (int x = 0; x < kLength; ++x) cells.push_back({x, 1, 0});
+  const Lattice lattice(cells, {0, 0, 0});
+  ASSERT_EQ(lattice.size(), 2U * kLength);
+  EXPECT_EQ(lattice.cell(kLength - 1), (Cell{kLength - 1, 0, 0}));
+  EXPECT_EQ(lattice.cell(kLength), (Cell{0, 1, 0}));
+  EXPECT_EQ(lattice.neighbour(kLength - 1, 3), 2U * kLength - 1);
+}
+
 // A lattice over the box that holds both would have 10^18 cells.
 TEST(Lattice, TwoBodiesAMillionCellsApart) {
   std::vector<Cell> cells = cells_of_box(20, 20, 20);

@@ -48,6 +48,9 @@ TEST(Technology, RefusesEveryMistakeAtItsPlace) {
   EXPECT_EQ(error_of(of("low = 1\nhigh = 2\nunit = \"pJ/bit\"\nsource = \" \"\n")),
             "t.toml:6:10: the source of 'add_bit' is empty\n"
             "  hint: where low and high are published, or \"measured by\" which script");
+  EXPECT_EQ(
+      error_of(of("low = 1\nhigh = 2\nunit = \"pJ/bit\"\nsource = \"" + std::string(200'000, '0') + "\"\n")),
+      "t.toml:6:10: 'source' is a text of 200000 bytes: at most 4096 are read");
   EXPECT_EQ(error_of(of("low = 3\nhigh = 2\nunit = \"pJ/bit\"\nsource = \"a\"\n")),
             "t.toml:3:7: 'add_bit': low 3 is above high 2\n"
             "  hint: low is the least figure published or measured, high the greatest");
