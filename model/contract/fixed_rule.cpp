@@ -16,14 +16,6 @@ int64_t integer_sqrt(uint64_t a) {
 
 }  // namespace
 
-FixedTable::Address FixedTable::address(uint64_t r2) const {
-  Address address{};
-  table_address(*this, r2, address.index, address.t);
-  return address;
-}
-
-int64_t FixedTable::at(uint64_t r2, uint32_t law) const { return table_value(*this, r2, law << index_bits); }
-
 Int3 difference(const FixedRule& rule, const Int3& x_i, const Int3& x_j) {
   Int3 d;
   for (int a = 0; a < 3; ++a) d[a] = round_odd(x_j[a] - x_i[a], rule.difference_shift);

@@ -19,7 +19,13 @@ uint64_t hash_of(const Lattice& lattice, const Particle& particle) {
 
 uint64_t hash_of(const Lattice& lattice, const State& state) {
   uint64_t sum = 0;
-  for (const Particle& particle : state.particles) sum += hash_of(lattice, particle);
+  const size_t fields = state.fields.size() / std::max<size_t>(1, state.particles.size());
+  for (size_t k = 0; k < state.particles.size(); ++k) {
+    Hash hash;
+    hash.resume(hash_of(lattice, state.particles[k]));
+    for (size_t f = 0; f < fields; ++f) hash.add(state.fields[k * fields + f]);
+    sum += hash.value();
+  }
   return sum;
 }
 

@@ -24,12 +24,15 @@ struct Particle {
 struct State {
   uint64_t step = 0;
   std::vector<Particle> particles;  // sorted by id wherever a State is handed over
+  // What a program (model/graph/program.h) keeps of a particle besides: so many numbers of each, in the order
+  // of the particles. Empty of the pair law.
+  std::vector<int64_t> fields = {};
 
   bool operator==(const State&) const = default;
 };
 
-// Sum over particles (modulo 2^64) of a 64-bit mix of id, type, cell coordinates, x, v and u: independent of
-// order, so that threads, ranks and GPUs can add up their shares.
+// Sum over particles (modulo 2^64) of a 64-bit mix of id, type, cell coordinates, x, v, u and fields, where
+// there are any: independent of order, so that threads, ranks and GPUs can add up their shares.
 uint64_t hash_of(const Lattice& lattice, const Particle& particle);
 uint64_t hash_of(const Lattice& lattice, const State& state);
 

@@ -7,7 +7,8 @@ cd "$1"
 
 declare -A may=(
   [model/base]=""
-  [model/contract]="model/base"
+  [model/graph]="model/base"
+  [model/contract]="model/base model/graph"
   [model/bond_order]="model/base"
   [model/coarse]="model/base"
   [model/rules]="model/base model/contract model/bond_order"
