@@ -44,9 +44,9 @@ struct Write {
 
 struct Round {
   std::string name;
-  Graph pair;
+  Graph pair = {};
   int when = -1;  // truth: the pair counts
-  std::vector<Sum> sums;
+  std::vector<Sum> sums = {};
   std::vector<Write> bond_writes = {};  // by the pair's graph
   Graph finish = {};
   std::vector<Write> writes = {};  // by the finish
