@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "model/base/fixed_math.h"
+#include "model/contract/pair_program.h"
 
 namespace cuboct {
 namespace {
@@ -21,7 +21,14 @@ auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number)
 }  // namespace
 
 Golden::Golden(const FixedRule& rule, const Lattice& lattice, int capacity, const State& initial)
-    : rule_(rule), lattice_(lattice), capacity_(capacity), step_(initial.step), cells_(lattice.size()) {
+    : Golden(pair_program(rule, capacity), lattice, capacity, initial) {}
+
+Golden::Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial)
+    : program_(std::make_shared<const graph::FixedProgram>(std::move(program))),
+      lattice_(lattice),
+      capacity_(capacity),
+      step_(initial.step),
+      cells_(lattice.size()) {
   std::vector<RunError> faults;
   for (const Particle& p : initial.particles) {
     auto& cell = cells_[p.cell];
@@ -31,6 +38,22 @@ Golden::Golden(const FixedRule& rule, const Lattice& lattice, int capacity, cons
       cell.push_back(p);
   }
   fail_if_any(faults);
+  add_fields(initial);
+}
+
+void Golden::add_fields(const State& initial) {
+  if (program_->numbers() == 0) return;
+  for (uint32_t row = 0; row < initial.particles.size(); ++row) {
+    const uint32_t id = initial.particles[row].id;
+    if (id >= row_of_id_.size()) row_of_id_.resize(id + 1);
+    row_of_id_[id] = row;
+  }
+  fields_ = initial.fields;
+  if (!fields_.empty()) return;
+  for (size_t k = 0; k < initial.particles.size(); ++k)
+    for (const graph::Field& field : program_->fields)
+      fields_.insert(fields_.end(), static_cast<size_t>(field.numbers),
+                     std::clamp<int64_t>(0, field.range.low, field.range.high));
 }
 
 RunError Golden::fault_of(Fault fault, uint32_t cell, uint32_t particle, int64_t number) const {
@@ -44,50 +67,93 @@ void Golden::fail_if_any(const std::vector<RunError>& faults) const {
                           [](const auto& a, const auto& b) { return order(a) < order(b); });
 }
 
-void Golden::step() {
-  const int P = rule_.widths.position_frac, frac = rule_.widths.velocity_frac();
-  std::vector<RunError> faults;
+Seen Golden::seen(const Particle& particle) const {
+  const int guard = program_->guard;
+  const Int3& x = particle.x;
+  const auto numbers = static_cast<size_t>(program_->numbers());
+  return {&particle,
+          {x[0] >> guard, x[1] >> guard, x[2] >> guard},
+          numbers > 0 ? fields_.data() + row_of_id_[particle.id] * numbers : nullptr};
+}
 
-  // Force: every particle against every other of its own and the neighbour cells.
-  std::vector<std::vector<Int3>> sums(cells_.size());
-  std::vector<Int3> seen;  // visible positions of a cell's own
+// Particles of a cell and of those around it, in the frame of the cell.
+std::vector<Seen> Golden::neighbours(uint32_t cell) const {
+  std::vector<Seen> all;
+  for (const auto& [other, offset] : lattice_.neighbourhood(cell))
+    for (const Particle& j : cells_[other]) {
+      all.push_back(seen(j));
+      for (int a = 0; a < 3; ++a) all.back().x[a] += int64_t{offset[a]} << program_->position_frac;
+    }
+  return all;
+}
+
+Golden::Sums Golden::meet(const graph::Round& round) const {
+  std::vector<RunError> faults;
+  PairRun pairs(*program_, round, step_);
+  const size_t numbers = numbers_of_sums(round);
+  Sums sums(cells_.size());
   for (uint32_t n = 0; n < cells_.size(); ++n) {
-    sums[n].resize(cells_[n].size());
     if (cells_[n].empty()) continue;
-    seen.clear();
-    for (const Particle& i : cells_[n]) seen.push_back(visible(rule_, i.x));
-    for (const auto& [other, offset] : lattice_.neighbourhood(n))
-      for (const Particle& j : cells_[other]) {
-        Int3 x_j = visible(rule_, j.x);
-        for (int a = 0; a < 3; ++a) x_j[a] += int64_t{offset[a]} << P;
-        for (size_t k = 0; k < cells_[n].size(); ++k) {
-          const Particle& i = cells_[n][k];
-          if (i.id == j.id) continue;
-          const PairResult pair = pair_kick(rule_, seen[k], i.v, i.type, x_j, j.v, j.type);
-          if (pair.fault != Fault::none) faults.push_back(fault_of(pair.fault, n, i.id, pair.number));
-          for (int a = 0; a < 3; ++a) sums[n][k][a] += pair.kick[a];
-        }
-      }
+    sums[n].resize(cells_[n].size() * numbers);
+    const std::vector<Seen> partners = neighbours(n);
+    for (size_t k = 0; k < cells_[n].size(); ++k) {
+      const Particle& i = cells_[n][k];
+      pairs.add(seen(i), partners, std::span(sums[n]).subspan(k * numbers, numbers));
+      for (const graph::LaneFault& f : pairs.faults()) faults.push_back(fault_of(f.fault, n, i.id, f.number));
+    }
   }
   fail_if_any(faults);
+  return sums;
+}
 
-  // Update: kick, constraints, drift.
-  std::vector<std::vector<Moving>> moving(cells_.size());
-  for (uint32_t n = 0; n < cells_.size(); ++n)
-    for (size_t k = 0; k < cells_[n].size(); ++k) {
-      Moving m{cells_[n][k], {}};
-      Particle& p = m.particle;
-      const FinishResult result = finish(rule_, sums[n][k], p.x, p.v, p.u, p.type);
-      if (result.fault != Fault::none) faults.push_back(fault_of(result.fault, n, p.id, result.number));
-      p.v = result.v;
-      p.u = result.u;
-      for (int a = 0; a < 3; ++a) {
-        m.away[a] = static_cast<int>(result.x[a] >> frac);
-        p.x[a] = result.x[a] & ((int64_t{1} << frac) - 1);
+void Golden::finish(const graph::Round& round, const Sums& sums, std::vector<std::vector<Moving>>& moving) {
+  std::vector<RunError> faults;
+  FinishRun run(*program_, round, step_);
+  const bool last = &round == &program_->rounds.back();
+  const size_t numbers = numbers_of_sums(round);
+  for (uint32_t n = 0; n < cells_.size(); ++n) {
+    std::vector<Seen> own;
+    for (const Particle& p : cells_[n]) own.push_back(seen(p));
+    for (size_t k = 0; k < own.size(); k += FinishRun::kRoom) {
+      const auto some = std::span(own).subspan(k, std::min(FinishRun::kRoom, own.size() - k));
+      run.run(some, std::span(sums[n]).subspan(k * numbers, some.size() * numbers));
+      for (const auto& f : run.faults())
+        faults.push_back(fault_of(f.fault, n, cells_[n][k + static_cast<size_t>(f.lane)].id, f.number));
+      for (size_t lane = 0; lane < some.size(); ++lane) {
+        keep(round, run, lane, cells_[n][k + lane].id);
+        if (last) moving[n].push_back(moved(cells_[n][k + lane], run, lane));
       }
-      moving[n].push_back(m);
     }
+  }
   fail_if_any(faults);
+}
+
+void Golden::keep(const graph::Round& round, FinishRun& run, size_t lane, uint32_t id) {
+  for (const graph::Write& write : round.writes) {
+    const size_t row = row_of_id_[id] * static_cast<size_t>(program_->numbers());
+    fields_[row + static_cast<size_t>(program_->place(write.field) + write.component)] =
+        run.value(write.node, lane);
+  }
+}
+
+Golden::Moving Golden::moved(const Particle& particle, FinishRun& run, size_t lane) const {
+  const int frac = program_->position_frac + program_->guard;
+  const graph::Motion& motion = program_->motion;
+  Moving m{particle, {}};
+  m.particle.u = {};
+  for (size_t a = 0; a < motion.v.size(); ++a) {
+    m.particle.v[a] = run.value(motion.v[a], lane);
+    if (!motion.u.empty()) m.particle.u[a] = run.value(motion.u[a], lane);
+    const int64_t x = particle.x[a] + run.value(motion.drift[a], lane);
+    m.away[a] = static_cast<int>(x >> frac);
+    m.particle.x[a] = x & ((int64_t{1} << frac) - 1);
+  }
+  return m;
+}
+
+void Golden::step() {
+  std::vector<std::vector<Moving>> moving(cells_.size());
+  for (const graph::Round& round : program_->rounds) finish(round, meet(round), moving);
 
   // Migration: along x, then y, then z; those who stay keep their order, then come those from below, then
   // from above.
@@ -135,6 +201,9 @@ State Golden::state() const {
   State state{step_, {}};
   for (const auto& cell : cells_) state.particles.insert(state.particles.end(), cell.begin(), cell.end());
   std::sort(state.particles.begin(), state.particles.end(), [](auto& a, auto& b) { return a.id < b.id; });
+  const auto numbers = static_cast<size_t>(program_->numbers());
+  for (const Particle& p : state.particles)
+    for (size_t f = 0; f < numbers; ++f) state.fields.push_back(fields_[row_of_id_[p.id] * numbers + f]);
   return state;
 }
 

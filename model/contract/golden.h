@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The golden engine: the numeric contract and nothing else. It defines the bits.
+// The golden engine: it runs a program as it stands, pair by pair. It defines the bits.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "model/contract/fixed_rule.h"
 #include "model/contract/lattice.h"
+#include "model/contract/program_run.h"
 #include "model/contract/state.h"
+#include "model/graph/program.h"
 
 namespace cuboct {
 
@@ -14,6 +17,9 @@ class Golden {
  public:
   // `capacity`: particles that a cell holds. Throws RunError where the initial state exceeds it.
   Golden(const FixedRule& rule, const Lattice& lattice, int capacity, const State& initial);
+  // Any program but one that keeps bonds. A state without fields begins with each field at zero, or at the
+  // end of its range that is next to zero.
+  Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial);
 
   // Advances one step; throws RunError at the first step that breaks a width, a capacity or the lattice.
   void step();
@@ -28,15 +34,26 @@ class Golden {
     Particle particle;
     std::array<int, 3> away;  // per axis: -1, 0, +1 cell still to go
   };
+  using Sums = std::vector<std::vector<int64_t>>;  // by cell: of each particle all components of all sums
+
+  void add_fields(const State& initial);
+  Seen seen(const Particle& particle) const;
+  std::vector<Seen> neighbours(uint32_t cell) const;
+  Sums meet(const graph::Round& round) const;
+  void finish(const graph::Round& round, const Sums& sums, std::vector<std::vector<Moving>>& moving);
+  void keep(const graph::Round& round, FinishRun& run, size_t lane, uint32_t id);
+  Moving moved(const Particle& particle, FinishRun& run, size_t lane) const;
   RunError fault_of(Fault fault, uint32_t cell, uint32_t particle, int64_t number) const;
   void fail_if_any(const std::vector<RunError>& faults) const;
   void migrate(int axis, std::vector<std::vector<Moving>>& moving) const;
 
-  const FixedRule& rule_;
+  std::shared_ptr<const graph::FixedProgram> program_;
   const Lattice& lattice_;
   int capacity_;
   uint64_t step_ = 0;
   std::vector<std::vector<Particle>> cells_;
+  std::vector<int64_t> fields_;      // the program's numbers of each particle
+  std::vector<uint32_t> row_of_id_;  // where they are; empty where there are none
 };
 
 }  // namespace cuboct

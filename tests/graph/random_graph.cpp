@@ -20,8 +20,17 @@ Interval random_range(Dice& dice) {
 
 class Draw {
  public:
-  explicit Draw(uint64_t seed) : dice_(seed) {
+  explicit Draw(uint64_t seed, bool pair = false) : dice_(seed), pair_(pair) {
     tables_ = {b_.table(random_table(dice_)), b_.table(random_table(dice_))};
+    if (pair_) {
+      for (int k = 0; k < 2; ++k)
+        for (const Source source : {Source::own_field, Source::other_field, Source::apart})
+          numbers_.push_back(b_.input(source, k, 0, {-4000, 4000}));
+      for (int k = 0; k < 4; k += 2) numbers_.push_back(b_.add(numbers_[0], numbers_[1]));
+      numbers_.push_back(b_.sub(numbers_[3], numbers_[4]));
+      truths_.push_back(b_.eq(numbers_[0], numbers_[1]));
+      return;
+    }
     for (int k = dice_.draw(2, 5); k > 0; --k)
       numbers_.push_back(b_.input(Source::own_field, k, 0, random_range(dice_)));
     truths_.push_back(b_.input(Source::own_field, 9, 0, {0, 1}));
@@ -29,13 +38,15 @@ class Draw {
 
   Drawn drawn(int steps) {
     for (int k = 0; k < steps; ++k) {
-      const auto op = static_cast<Op>(dice_.draw(static_cast<int>(Op::add), static_cast<int>(Op::noise)));
+      auto op = static_cast<Op>(dice_.draw(static_cast<int>(Op::add), static_cast<int>(Op::noise)));
+      // Parity takes a step without a fault, and pairs that count.
+      if (pair_ && (op == Op::check || op == Op::within)) op = Op::mul;
       try {
         add(op);
       } catch (const InputError&) {
         ++refused_[op];
       }
-      if (k == steps / 2) count();
+      if (k == steps / 2 && !pair_) count();
     }
     return {b_.take(), refused_};
   }
@@ -133,6 +144,7 @@ class Draw {
   }
 
   Dice dice_;
+  bool pair_;
   Builder b_;
   std::vector<int> tables_, numbers_, truths_;
   std::map<Op, int> refused_;
@@ -162,6 +174,8 @@ FixedTable random_table(Dice& dice) {
 }
 
 Drawn random_graph(uint64_t seed, int steps) { return Draw(seed).drawn(steps); }
+
+graph::Graph random_pair_graph(uint64_t seed, int steps) { return Draw(seed, true).drawn(steps).graph; }
 
 int64_t random_value(Dice& dice, graph::Interval range) {
   const auto any = [&] {

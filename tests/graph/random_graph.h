@@ -20,6 +20,9 @@ struct Drawn {
 // `steps` operations over a few inputs; with a pair's truth in the middle.
 Drawn random_graph(uint64_t seed, int steps);
 
+// Over two fields of own and other and what is between them, without checks.
+graph::Graph random_pair_graph(uint64_t seed, int steps);
+
 // Values of an input: its ends, zero, ties of roundings, seams of tables, any.
 int64_t random_value(Dice& dice, graph::Interval range);
 

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+#include "model/contract/program_run.h"
+
+#include <numeric>
+#include <stdexcept>
+
+namespace cuboct {
+namespace {
+
+using graph::FixedProgram;
+using graph::Node;
+using graph::Op;
+using graph::Source;
+
+constexpr size_t kPairRoom = 128;  // lanes: the values of a pair law stay in the nearest cache
+
+size_t at(int k) { return static_cast<size_t>(k); }
+
+// A pair's nodes that outputs need; a bond's writes are not run.
+std::vector<int> terms_of(const graph::Round& round) {
+  if (!round.bond_writes.empty()) throw std::logic_error("golden holds no bonds");
+  std::vector<int> terms;
+  for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
+  return terms;
+}
+
+// What is the same for all pairs of a particle, and for a particle alone.
+int64_t own_value(const FixedProgram& program, const Node& node, const Seen& own, uint64_t step) {
+  const auto axis = at(node.axis);
+  switch (node.source) {
+    case Source::own_x:
+      return own.particle->x[axis];
+    case Source::own_v:
+      return own.particle->v[axis];
+    case Source::own_u:
+      return own.particle->u[axis];
+    case Source::own_constant:
+      return program.type_constants[at(node.index)].values[own.particle->type];
+    case Source::own_field:
+      return own.fields[program.place(node.index) + node.axis];
+    case Source::own_id:
+      return own.particle->id;
+    case Source::step:
+      return static_cast<int64_t>(step);
+    default:
+      throw std::logic_error(std::string("golden has no ") + to_string(node.source));
+  }
+}
+
+// Of each partner in turn; `partner(k)` is that of lane k.
+template <class Partner>
+void fill_input(const FixedProgram& program, const Node& node, const Seen& own, uint64_t step, size_t lanes,
+                int64_t* out, Partner partner) {
+  const auto axis = at(node.axis);
+  const auto each = [&](auto value) {
+    for (size_t k = 0; k < lanes; ++k) out[k] = value(partner(k));
+  };
+  switch (node.source) {
+    case Source::apart:
+      return each([&, x = own.x[axis]](const Seen& j) { return j.x[axis] - x; });
+    case Source::other_v:
+      return each([&](const Seen& j) { return j.particle->v[axis]; });
+    case Source::other_id:
+      return each([&](const Seen& j) { return int64_t{j.particle->id}; });
+    case Source::other_field:
+      return each([&, n = program.place(node.index) + node.axis](const Seen& j) { return j.fields[n]; });
+    case Source::other_constant:
+      return each([&, c = program.type_constants[at(node.index)].values.data()](const Seen& j) {
+        return c[j.particle->type];
+      });
+    case Source::pair_constant:
+      return each(
+          [&, row = program.pair_constants[at(node.index)].values.data() +
+                    at(own.particle->type * program.types)](const Seen& j) { return row[j.particle->type]; });
+    default:
+      std::fill_n(out, lanes, own_value(program, node, own, step));
+  }
+}
+
+}  // namespace
+
+size_t numbers_of_sums(const graph::Round& round) {
+  size_t numbers = 0;
+  for (const graph::Sum& sum : round.sums) numbers += sum.terms.size();
+  return numbers;
+}
+
+PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_t step)
+    : program_(program),
+      graph_(round.pair),
+      step_(step),
+      when_(round.when),
+      terms_(terms_of(round)),
+      block_(round.pair, kPairRoom) {
+  std::vector<bool> early(graph_.nodes.size()), kept(graph_.nodes.size());
+  for (const int n : needed_by(graph_, {when_})) {
+    early[at(n)] = true;
+    (graph_.nodes[at(n)].op == Op::input ? early_inputs_ : early_).push_back(n);
+  }
+  const auto keep = [&](int n) { kept[at(n)] = early[at(n)] && graph_.nodes[at(n)].op != Op::constant; };
+  for (const int n : terms_) keep(n);
+  for (const int n : needed_by(graph_, terms_)) {
+    if (early[at(n)]) continue;
+    for (const int input : graph_.nodes[at(n)].inputs) keep(input);
+    (graph_.nodes[at(n)].op == Op::input ? late_inputs_ : late_).push_back(n);
+  }
+  for (int n = 0; n < static_cast<int>(kept.size()); ++n)
+    if (kept[at(n)]) kept_.push_back(n);
+}
+
+void PairRun::add(const Seen& own, std::span<const Seen> partners, std::span<int64_t> sums) {
+  faults_.clear();
+  for (size_t k = 0; k < partners.size(); k += kPairRoom)
+    add_block(own, partners.subspan(k, std::min(kPairRoom, partners.size() - k)), sums);
+}
+
+void PairRun::fill(const std::vector<int>& inputs, const Seen& own, std::span<const Seen> partners,
+                   std::span<const uint32_t> chosen) {
+  for (const int n : inputs) {
+    const Node& node = graph_.nodes[at(n)];
+    if (chosen.empty())
+      fill_input(program_, node, own, step_, partners.size(), block_.values(n),
+                 [&](size_t k) -> const Seen& { return partners[k]; });
+    else
+      fill_input(program_, node, own, step_, chosen.size(), block_.values(n),
+                 [&](size_t k) -> const Seen& { return partners[chosen[k]]; });
+  }
+}
+
+void PairRun::add_block(const Seen& own, std::span<const Seen> partners, std::span<int64_t> sums) {
+  fill(early_inputs_, own, partners, {});
+  block_.run(early_, partners.size());
+  const int64_t* when = block_.values(when_);
+  chosen_.clear();
+  for (uint32_t k = 0; k < partners.size(); ++k)
+    if (when[k] && partners[k].particle != own.particle) chosen_.push_back(k);
+  if (chosen_.empty()) return;
+  block_.compress(kept_, chosen_);
+  fill(late_inputs_, own, partners, chosen_);
+  block_.clear_faults();
+  block_.run(late_, chosen_.size());
+  for (size_t t = 0; t < terms_.size(); ++t) {
+    const int64_t* term = block_.values(terms_[t]);
+    sums[t] = std::accumulate(term, term + chosen_.size(), sums[t]);
+  }
+  faults_.insert(faults_.end(), block_.faults().begin(), block_.faults().end());
+}
+
+FinishRun::FinishRun(const FixedProgram& program, const graph::Round& round, uint64_t step)
+    : program_(program), round_(round), step_(step), block_(round.finish, kRoom) {
+  for (const graph::Sum& sum : round.sums) {
+    first_of_sum_.push_back(numbers_);
+    numbers_ += sum.terms.size();
+  }
+  std::vector<int> outputs;
+  for (const graph::Write& write : round.writes) outputs.push_back(write.node);
+  if (&round == &program.rounds.back())
+    for (const auto* nodes : {&program.motion.v, &program.motion.u, &program.motion.drift})
+      outputs.insert(outputs.end(), nodes->begin(), nodes->end());
+  nodes_ = needed_by(round.finish, outputs);
+}
+
+void FinishRun::run(std::span<const Seen> particles, std::span<const int64_t> sums) {
+  for (const int n : nodes_) {
+    const Node& node = round_.finish.nodes[at(n)];
+    if (node.op != Op::input) continue;
+    int64_t* out = block_.values(n);
+    for (size_t k = 0; k < particles.size(); ++k)
+      out[k] = node.source == Source::sum ? sums[k * numbers_ + first_of_sum_[at(node.index)] + at(node.axis)]
+                                          : own_value(program_, node, particles[k], step_);
+  }
+  block_.clear_faults();
+  block_.run(nodes_, particles.size());
+}
+
+}  // namespace cuboct
