@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "model/program/fit_table.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace cuboct {
+namespace {
+
+constexpr int kBinBits = 6;  // 64 parabolas an octave: for x^-n off by n^3/2^25 of a value at most
+constexpr int kMostIndex = 11;
+constexpr int kCoefficient = 25;
+constexpr int kFraction = 17;
+
+struct Parabola {
+  std::array<double, 3> c{};
+};
+
+int octave_of(double argument) { return argument < 1 ? 0 : static_cast<int>(std::floor(std::log2(argument))); }
+
+}  // namespace
+
+FittedTable fit_table(const TableRoom& room, const std::function<double(double)>& f) {
+  FittedTable out;
+  FixedTable& table = out.table;
+  table.shape = TableShape::octaves;
+  table.degree = 2;
+  table.difference_frac = std::max((room.bits + 1) / 2, (kBinBits + 1) / 2 + 1);
+  table.bin_bits = kBinBits;
+  table.fraction_bits = kFraction;
+  const int octaves = 2 * table.difference_frac, most = 1 << (kMostIndex - kBinBits);
+  table.first_octave = std::clamp(octave_of(room.from / room.step), std::max(0, octaves - most), octaves - 1);
+  table.index_bits =
+      kBinBits + static_cast<int>(std::bit_width(static_cast<unsigned>(octaves - table.first_octave - 1)));
+
+  const auto at = [&](double argument) { return f(std::min(argument * room.step, room.to)) / room.unit; };
+  std::vector<Parabola> bins;
+  double largest = 0;
+  const size_t entries = size_t{1} << table.index_bits;
+  for (size_t k = 0; k < entries; ++k) {
+    const int octave = table.first_octave + static_cast<int>(k >> kBinBits);
+    const double width = std::ldexp(1.0, octave - kBinBits);
+    const double begin = std::ldexp(1.0, octave) + width * static_cast<double>(k % (1u << kBinBits));
+    const double y0 = at(begin), ym = at(begin + width / 2), y1 = at(begin + width);
+    bins.push_back({{y0, -3 * y0 + 4 * ym - y1, 2 * y0 - 4 * ym + 2 * y1}});
+    for (const double c : bins.back().c) largest = std::max(largest, std::abs(c));
+    out.largest = std::max(out.largest, std::abs(y0));
+  }
+  int exponent = 0;
+  if (largest > 0) std::frexp(largest, &exponent);
+  table.value_frac = kCoefficient - exponent;
+  for (const Parabola& bin : bins) {
+    table.c0.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[0], table.value_frac))));
+    table.c1.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[1], table.value_frac))));
+    table.c2.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[2], table.value_frac))));
+  }
+  const uint64_t last = static_cast<uint64_t>(std::min(room.to / room.step, std::ldexp(1.0, octaves) - 1));
+  for (size_t k = 0; k < 4 * entries; ++k) {
+    const int octave = table.first_octave + static_cast<int>(k >> (kBinBits + 2));
+    const auto argument = static_cast<uint64_t>(
+        std::ldexp(1.0 + (static_cast<double>(k % (4u << kBinBits)) + 0.5) / (4 << kBinBits), octave));
+    if (argument > last) break;
+    const double value = std::ldexp(static_cast<double>(table.at(argument)), -table.value_frac);
+    out.worst = std::max(out.worst, std::abs(value - at(static_cast<double>(argument))));
+  }
+  return out;
+}
+
+}  // namespace cuboct

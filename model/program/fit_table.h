@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Tables of octaves made from a function: parabolas through both ends and the middle of each bin.
+#pragma once
+
+#include <functional>
+
+#include "model/graph/fixed_table.h"
+
+namespace cuboct {
+
+struct TableRoom {
+  int bits = 0;     // of the argument, which is an integer of `step` each
+  double step = 1;
+  double from = 0;  // the table begins with the octave that holds it
+  double to = 0;    // beyond it the function is worth what it is there
+  double unit = 1;  // of the values
+};
+
+struct FittedTable {
+  FixedTable table;  // value_frac: of values over the unit
+  double worst = 0;  // largest error at four points a bin, over the unit
+  double largest = 0;
+};
+
+// With the largest value_frac whose coefficients stay below 2^25.
+FittedTable fit_table(const TableRoom& room, const std::function<double(double)>& f);
+
+}  // namespace cuboct

@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: MIT
+#include "model/program/integer_program.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "model/base/error.h"
+#include "model/program/integers.h"
+
+namespace cuboct {
+namespace {
+
+using graph::Builder;
+using graph::FixedProgram;
+using Source = RealSource;
+
+constexpr int kFieldBits = 46;     // of a field that goes on
+constexpr int kSumBits = 50;       // of a sum
+constexpr double kSteepest = 32;   // a table begins where its function is so many times what it is further out
+constexpr double kFurther = 0.55;  // of the reach
+constexpr double kNearest = 1.0 / 64;
+
+[[noreturn]] void refuse(const std::string& what, const std::string& hint = "engine reference runs it") {
+  throw InputError(what, hint).about({"rule.file", "rule"});
+}
+
+// The node r2 of a graph of pairs, and what depends on it alone.
+class Radial {
+ public:
+  explicit Radial(const RealGraph& graph) : graph_(graph), of_r_(graph.nodes().size(), 0) {
+    for (NodeId id = 0; id < graph.nodes().size(); ++id) {
+      if (is_square(id)) r2_ = id;
+      of_r_[id] = r2_ == id || depends_on_r_alone(id);
+    }
+  }
+  bool is_r2(NodeId id) const { return r2_ && *r2_ == id; }
+  bool of_r(NodeId id) const { return of_r_[id] != 0; }
+  // Its value at r2, m^2.
+  double at(NodeId id, double r2) const {
+    std::vector<double> values(id + 1, 0);
+    for (NodeId k = 0; k <= id; ++k) {
+      const RealNode& node = graph_.at(k);
+      if (node.op == RealOp::constant) values[k] = node.value;
+      if (is_r2(k))
+        values[k] = r2;
+      else if (of_r_[k])
+        values[k] = applied(node.op, values[node.of[0]], values[node.of[1]], values[node.of[2]]);
+    }
+    return values[id];
+  }
+
+ private:
+  bool is_input(NodeId id, uint32_t axis) const {
+    const RealNode& node = graph_.at(id);
+    return node.op == RealOp::input && node.input == RealInput{Source::difference, axis};
+  }
+  bool is_square_of(NodeId id, uint32_t axis) const {
+    const RealNode& node = graph_.at(id);
+    return node.op == RealOp::multiply && is_input(node.of[0], axis) && is_input(node.of[1], axis);
+  }
+  // (x x + y y) + z z
+  bool is_square(NodeId id) const {
+    const RealNode& node = graph_.at(id);
+    if (node.op != RealOp::add || !is_square_of(node.of[1], 2)) return false;
+    const RealNode& xy = graph_.at(node.of[0]);
+    return xy.op == RealOp::add && is_square_of(xy.of[0], 0) && is_square_of(xy.of[1], 1);
+  }
+  bool depends_on_r_alone(NodeId id) const {
+    const RealNode& node = graph_.at(id);
+    if (node.op == RealOp::constant || node.op == RealOp::input) return false;
+    bool any = false;
+    for (int k = 0; k < arity(node.op); ++k) {
+      const NodeId of = node.of[static_cast<size_t>(k)];
+      if (of_r_[of])
+        any = true;
+      else if (graph_.at(of).op != RealOp::constant)
+        return false;
+    }
+    return any;
+  }
+
+  const RealGraph& graph_;
+  std::vector<char> of_r_;
+  std::optional<NodeId> r2_;
+};
+
+// One graph of the rule, into one of integers.
+class Lowering {
+ public:
+  Lowering(const RealGraph& graph, Builder& builder, std::function<Scaled(const RealInput&)> input)
+      : graph_(graph), b_(builder), integers_(builder), input_(std::move(input)), made_(graph.nodes().size()) {}
+
+  // Of a pair: r2 as a node, and up to where it counts, m^2.
+  void pairs(const Radial& radial, const Scaled& r2, double reach2) {
+    radial_ = &radial, r2_ = r2, reach2_ = reach2;
+  }
+  // `unit`: that it should count in, where that costs nothing; 0: any.
+  Scaled value(NodeId id, double unit = 0) {
+    if (unit > 0 && wants(id)) return made(id, unit);
+    if (!made_[id]) made_[id] = made(id, 0);
+    return *made_[id];
+  }
+  Integers& integers() { return integers_; }
+  const std::vector<IntegerProgram::TableError>& errors() const { return errors_; }
+
+ private:
+  bool of_r(NodeId id) const { return radial_ != nullptr && radial_->of_r(id); }
+  // Whether a table of r is a factor of it.
+  bool wants(NodeId id) const {
+    if (radial_ != nullptr && radial_->is_r2(id)) return false;
+    if (of_r(id)) return true;
+    const RealNode& node = graph_.at(id);
+    switch (node.op) {
+      case RealOp::multiply:
+        return wants(node.of[0]) || wants(node.of[1]);
+      case RealOp::divide:
+        return wants(node.of[0]) || of_r(node.of[1]);
+      case RealOp::negate:
+        return wants(node.of[0]);
+      default:
+        return false;
+    }
+  }
+
+  Scaled made(NodeId id, double unit) {
+    const RealNode& node = graph_.at(id);
+    if (node.op == RealOp::constant) return Scaled::of(node.value);
+    if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
+    if (of_r(id) && !is_truth(node.op))
+      return table(fmt::format("node {}", id), [&](double r2) { return radial_->at(id, r2); }, unit);
+    const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
+    switch (node.op) {
+      case RealOp::input:
+        return input_(node.input);
+      case RealOp::add:
+        return integers_.add(of(0), of(1));
+      case RealOp::subtract:
+        return integers_.subtract(of(0), of(1));
+      case RealOp::multiply:
+        return product(node.of[0], node.of[1], unit);
+      case RealOp::divide:
+        return quotient(node.of[0], node.of[1], unit);
+      case RealOp::negate:
+        return integers_.negate(of(0, unit));
+      case RealOp::absolute:
+        return integers_.absolute(of(0));
+      case RealOp::least:
+      case RealOp::most:
+        return integers_.chosen(node.op == RealOp::least, of(0), of(1));
+      case RealOp::below:
+      case RealOp::at_most:
+        return integers_.below(of(0), of(1), node.op == RealOp::at_most);
+      case RealOp::equal:
+        return integers_.equal(of(0), of(1));
+      case RealOp::both:
+        return integers_.both(of(0), of(1));
+      case RealOp::either:
+        return integers_.either(of(0), of(1));
+      case RealOp::inverse:
+        return integers_.inverse(of(0));
+      case RealOp::select:
+        return integers_.select(of(0), of(1), of(2));
+      case RealOp::power:
+      default:
+        return of_one(node, of(0));
+    }
+  }
+  static bool is_truth(RealOp op) {
+    return op == RealOp::below || op == RealOp::at_most || op == RealOp::equal || op == RealOp::both ||
+           op == RealOp::either || op == RealOp::inverse;
+  }
+
+  // The factor that a table makes comes last, in what is left of the unit.
+  Scaled product(NodeId a, NodeId b, double unit) {
+    if (wants(a) && !wants(b)) std::swap(a, b);
+    const Scaled x = value(a);
+    const double left = x.constant() ? (x.number != 0 ? unit / std::abs(x.number) : 0) : unit / x.unit;
+    return integers_.multiply(x, value(b, wants(b) ? left : 0));
+  }
+  Scaled quotient(NodeId a, NodeId b, double unit) {
+    if (of_r(b)) {
+      const Scaled x = value(a);
+      const double left = x.constant() ? (x.number != 0 ? unit / std::abs(x.number) : 0) : unit / x.unit;
+      return integers_.multiply(
+          x, table("a reciprocal", [&](double r2) { return 1 / radial_->at(b, r2); }, left));
+    }
+    const Scaled x = value(a, 0), y = value(b);
+    if (!y.constant()) {
+      const RealNode reciprocal{RealOp::divide, {}, 0, {}};
+      return integers_.multiply(x, of_one(reciprocal, y));
+    }
+    if (y.number == 0) refuse("the rule divides by 0");
+    return integers_.multiply(x, Scaled::of(1 / y.number));
+  }
+  // A function of one value that is no function of r: by a table of 14 octaves below the value's largest.
+  Scaled of_one(const RealNode& node, const Scaled& a) {
+    if (!a.constant() && b_.range(a.node).low < 0)
+      refuse("a root, a power, a quotient, exp, log, sin or cos of what may be negative is not in integers yet");
+    const double exponent = node.op == RealOp::power ? graph_.at(node.of[1]).value : 0;
+    const auto f = [&](double x) {
+      return node.op == RealOp::divide ? 1 / x : applied(node.op, x, exponent, 0);
+    };
+    if (a.constant()) return Scaled::of(f(a.number));
+    const double most = std::ldexp(a.unit, -a.frac) * static_cast<double>(b_.range(a.node).high);
+    return integers_.function(a, f, std::ldexp(most, -14), most, 0);
+  }
+
+  // From where the function is not too steep. Nearer pairs are a fault, not a wrong force.
+  Scaled table(const std::string&, const std::function<double(double)>& f, double unit) {
+    double usual = 0;
+    constexpr int kSamples = 64;
+    const auto at = [&](double part) { return f(part * part * reach2_); };
+    for (int k = 0; k <= kSamples; ++k)
+      usual = std::max(usual, std::abs(at(kFurther + (1 - kFurther) * k / kSamples)));
+    double from = kFurther;
+    while (from > kNearest && std::isfinite(at(0.97 * from)) && std::abs(at(0.97 * from)) <= kSteepest * usual)
+      from *= 0.97;
+    const Scaled of_r2 = r2_;
+    const double core2 = from > kNearest ? from * from * reach2_ : 0;
+    const auto kept = [&](double r2) { return f(std::max(r2, std::max(core2, kNearest * kNearest * reach2_))); };
+    Scaled value = integers_.function(of_r2, kept, std::max(core2, kNearest * kNearest * reach2_), reach2_, unit);
+    if (core2 > 0) value.node = guarded(value.node, core2);
+    return value;
+  }
+  int guarded(int node, double core2) {
+    constexpr int64_t kBeyond = int64_t{1} << 27;
+    const int core = integers_.node_in(Scaled::of(core2), r2_.unit, r2_.frac);
+    const int near = b_.lt(r2_.node, core);
+    return b_.check(b_.select(near, b_.constant(kBeyond), node), 28, Fault::strength, b_.when());
+  }
+
+  const RealGraph& graph_;
+  Builder& b_;
+  Integers integers_;
+  std::function<Scaled(const RealInput&)> input_;
+  std::vector<std::optional<Scaled>> made_;
+  const Radial* radial_ = nullptr;
+  Scaled r2_;
+  double reach2_ = 0;
+  std::vector<IntegerProgram::TableError> errors_;
+};
+
+class Program {
+ public:
+  Program(const RuleProgram& rule, const FixedRule& base, int capacity,
+          const std::vector<std::vector<double>>& start)
+      : rule_(rule), base_(base), start_(start) {
+    if (rule.declaration.bonds == BondRange::reference)
+      refuse("bonds that keep what they hold are not in integers yet");
+    FixedProgram& p = out_.program;
+    p.name = rule.declaration.name;
+    p.axes = base.axes;
+    p.types = static_cast<int>(base.types.size());
+    p.partners = 27 * capacity - 1;
+    p.position_frac = base.widths.position_frac;
+    p.guard = base.widths.guard;
+    p.velocity = of_bits(base.widths.velocity_bits);
+    p.displacement = of_bits(base.widths.displacement_bits);
+    fields();
+    for (size_t k = 0; k < rule.rounds.size(); ++k) add_round(k);
+  }
+
+  IntegerProgram take() {
+    check(out_.program);
+    return std::move(out_);
+  }
+
+ private:
+  static graph::Interval of_bits(int bits) {
+    return {-(int64_t{1} << (bits - 1)), (int64_t{1} << (bits - 1)) - 1};
+  }
+
+  // Fields that a round makes have the range that the text gives; others that of what they begin with.
+  void fields() {
+    place_.assign(rule_.particle_numbers, -1);
+    for (size_t k = 0; k < rule_.particle.size(); ++k) {
+      const ProgramField& field = rule_.particle[k];
+      if (field.name == kForceField) continue;
+      const auto [low, high] = range_of(field);
+      const double size = std::max({std::abs(low), std::abs(high), 1e-300});
+      int exponent = 0;
+      std::frexp(size, &exponent);
+      const int frac = field.kind == Value::Kind::truth ? 0 : kFieldBits - 1 - exponent;
+      const graph::Interval room = field.kind == Value::Kind::truth ? graph::Interval{0, 1}
+                                                                    : of_bits(kFieldBits);
+      out_.program.fields.push_back({field.name, static_cast<int>(field.numbers()), room, frac});
+      out_.scales.push_back({1, frac});
+      out_.field.push_back(k);
+      for (uint32_t n = 0; n < field.numbers(); ++n)
+        place_[field.first + n] = static_cast<int>(out_.program.fields.size()) - 1;
+    }
+  }
+  bool is_made(const ProgramField& field) const {
+    return std::ranges::any_of(rule_.rounds, [&](const ProgramRound& round) {
+      return std::ranges::any_of(round.made,
+                                 [&](const ProgramWrite& write) { return write.number == field.first; });
+    });
+  }
+  std::pair<double, double> range_of(const ProgramField& field) const {
+    if (field.range) return *field.range;
+    if (is_made(field) && field.kind != Value::Kind::truth)
+      refuse(fmt::format("integers need the 'range' of the field '{}'", field.name),
+             "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
+    double low = 0, high = 0;
+    for (uint32_t n = 0; n < field.numbers(); ++n)
+      for (const double value : start_[field.first + n])
+        low = std::min(low, value), high = std::max(high, value);
+    return {low, high};
+  }
+  Scaled read_field(Builder& b, graph::Source source, uint32_t number) const {
+    const int field = place_[number];
+    const auto component = number - rule_.particle[out_.field[static_cast<size_t>(field)]].first;
+    const int node = graph::read_field(b, out_.program, source, field, static_cast<int>(component));
+    return {node, 0, out_.scales[static_cast<size_t>(field)].frac, 1};
+  }
+  Scaled mass(Builder& b, graph::Source source) {
+    if (!base_.weighted) return Scaled::of(base_.mass);
+    constexpr int kMassFrac = 10;  // masses differ by 1,024 at most
+    std::vector<int64_t> values;
+    for (size_t t = 0; t < base_.types.size(); ++t)
+      values.push_back(std::llround(std::ldexp(mass_of(base_, static_cast<int>(t)) / base_.mass, kMassFrac)));
+    if (mass_ < 0) {
+      mass_ = static_cast<int>(out_.program.type_constants.size());
+      out_.program.type_constants.push_back({"mass", values, kMassFrac});
+    }
+    return Integers::scaled(graph::read_constant(b, out_.program, source, mass_), kMassFrac, base_.mass);
+  }
+  Scaled velocity(Builder& b, graph::Source source, uint32_t axis) const {
+    if (static_cast<int>(axis) >= base_.axes) return Scaled::of(0);
+    const int node = graph::read_velocity(b, out_.program, source, static_cast<int>(axis));
+    return Integers::scaled(node, base_.widths.velocity_frac(), base_.cell_edge / base_.dt);
+  }
+
+  struct SumScale {
+    Scaled term;  // its unit and frac
+    int sum = 0, component = 0;
+  };
+
+  void add_round(size_t k) {
+    const ProgramRound& from = rule_.rounds[k];
+    graph::Round round;
+    round.name = from.name;
+    Builder b;
+    std::vector<int> d;
+    for (int a = 0; a < base_.axes; ++a)
+      d.push_back(b.named(b.round(read_apart(b, out_.program, a), base_.difference_shift), "d"));
+    const int r2 = b.named(b.dot(d, d), "r2");
+    const int D = base_.widths.difference_frac;
+    b.counts(b.named(b.lt(r2, b.constant(static_cast<int64_t>(base_.cutoff2), 2 * D)), "when"));
+    for (int& part : d) part = b.within(part);
+    const Radial radial(from.pair);
+    const double edge = base_.cell_edge;
+    Lowering pair(from.pair, b, [&](const RealInput& input) { return pair_input(b, input, d); });
+    pair.pairs(radial, Integers::scaled(b.within(r2), 2 * D, edge * edge), rule_.reach * rule_.reach);
+    const std::vector<SumScale> scales = add_terms(k, pair, b, round);
+    round.when = b.when();
+    round.pair = b.take();
+    add_finish(k, scales, round);
+    out_.program.rounds.push_back(std::move(round));
+  }
+  Scaled pair_input(Builder& b, const RealInput& input, const std::vector<int>& d) {
+    switch (input.source) {
+      case Source::difference:
+        return static_cast<int>(input.index) < base_.axes
+                   ? Integers::scaled(d[input.index], base_.widths.difference_frac, base_.cell_edge)
+                   : Scaled::of(0);
+      case Source::own_velocity:
+        return velocity(b, graph::Source::own_v, input.index);
+      case Source::other_velocity:
+        return velocity(b, graph::Source::other_v, input.index);
+      case Source::own_mass:
+        return mass(b, graph::Source::own_constant);
+      case Source::other_mass:
+        return mass(b, graph::Source::other_constant);
+      case Source::own_field:
+        return read_field(b, graph::Source::own_field, input.index);
+      case Source::other_field:
+        return read_field(b, graph::Source::other_field, input.index);
+      default:
+        return Scaled::of(base_.dt);
+    }
+  }
+
+  // The sums that become the force count as velocities do: a term is one rounding away from a kick.
+  bool is_force(size_t k, size_t term) const {
+    if (rule_.still || k + 1 != rule_.rounds.size()) return false;
+    return std::ranges::any_of(rule_.rounds[k].made, [&](const ProgramWrite& write) {
+      const RealNode& node = rule_.rounds[k].finish.at(write.node);
+      return write.number >= rule_.force && write.number < rule_.force + 3 && node.op == RealOp::input &&
+             node.input == RealInput{Source::sum, static_cast<uint32_t>(term)};
+    });
+  }
+  double kick_unit() const { return base_.mass * base_.cell_edge / (base_.dt * base_.dt); }
+
+  std::vector<SumScale> add_terms(size_t k, Lowering& pair, Builder& b, graph::Round& round) {
+    const ProgramRound& from = rule_.rounds[k];
+    const int spare = static_cast<int>(std::ceil(std::log2(out_.program.partners + 1)));
+    std::vector<SumScale> scales;
+    for (size_t n = 0; n < from.terms.size(); ++n) {
+      const Scaled when = pair.value(from.when[n]);
+      Scaled term;
+      if (is_force(k, n)) {
+        const int frac = base_.widths.velocity_frac();
+        const Scaled value = pair.integers().select(when, pair.value(from.terms[n], kick_unit()), Scaled::of(0));
+        term = Integers::scaled(pair.integers().node_in(value, kick_unit(), frac), frac, kick_unit());
+      } else {
+        term = pair.integers().select(when, pair.value(from.terms[n]), Scaled::of(0));
+        if (term.constant()) term = {pair.integers().node_of(term), 0, b.frac(pair.integers().node_of(term)), 1};
+        term = pair.integers().narrow(term, kSumBits - spare);
+      }
+      scales.push_back({term, static_cast<int>(round.sums.size()), 0});
+      round.sums.push_back({fmt::format("sum {}", n), {term.node}});
+    }
+    return scales;
+  }
+
+  void add_finish(size_t k, const std::vector<SumScale>& scales, graph::Round& round) {
+    const ProgramRound& from = rule_.rounds[k];
+    Builder b;
+    const auto sum = [&](uint32_t n) {
+      const SumScale& scale = scales[n];
+      const int node = graph::read_sum(b, out_.program, round, scale.sum, scale.component);
+      return Scaled{node, 0, scale.term.frac, scale.term.unit};
+    };
+    Lowering finish(from.finish, b, [&](const RealInput& input) { return finish_input(b, input, sum); });
+    for (const ProgramWrite& write : from.made) {
+      if (place_[write.number] < 0) continue;  // of the force
+      write_field(finish, b, write, round);
+    }
+    if (k + 1 == rule_.rounds.size()) move(finish, b, from);
+    round.finish = b.take();
+  }
+  Scaled finish_input(Builder& b, const RealInput& input, const std::function<Scaled(uint32_t)>& sum) {
+    switch (input.source) {
+      case Source::sum:
+        return sum(input.index);
+      case Source::own_velocity:
+        return velocity(b, graph::Source::own_v, input.index);
+      case Source::own_mass:
+        return mass(b, graph::Source::own_constant);
+      case Source::own_field:
+        return read_field(b, graph::Source::own_field, input.index);
+      case Source::position:
+        refuse("a finish of integers knows no position: a particle knows its place in its cell alone");
+      default:
+        return Scaled::of(base_.dt);
+    }
+  }
+  void write_field(Lowering& finish, Builder& b, const ProgramWrite& write, graph::Round& round) {
+    const int field = place_[write.number];
+    const graph::Field& to = out_.program.fields[static_cast<size_t>(field)];
+    const Scaled value = finish.value(write.node);
+    int node = finish.integers().node_in(value, 1, to.frac);
+    if (to.range != graph::Interval{0, 1}) node = b.check(node, kFieldBits, Fault::sum);
+    const auto component = write.number - rule_.particle[out_.field[static_cast<size_t>(field)]].first;
+    round.writes.push_back({field, static_cast<int>(component), b.named(node, to.name)});
+  }
+
+  void move(Lowering& finish, Builder& b, const ProgramRound& from) {
+    graph::Motion& motion = out_.program.motion;
+    if (rule_.still) {
+      for (int a = 0; a < base_.axes; ++a) {
+        motion.v.push_back(graph::read_velocity(b, out_.program, graph::Source::own_v, a));
+        motion.drift.push_back(b.constant(0));
+      }
+      return;
+    }
+    static_cast<void>(finish), static_cast<void>(from);
+    refuse("rules that move particles are not in integers yet");
+  }
+
+  const RuleProgram& rule_;
+  const FixedRule& base_;
+  const std::vector<std::vector<double>>& start_;
+  IntegerProgram out_;
+  std::vector<int> place_;  // [number of a particle field]: its field of the program; -1: the force
+  int mass_ = -1;           // the type constant
+};
+
+}  // namespace
+
+IntegerProgram integer_program(const RuleProgram& rule, const FixedRule& base, int capacity,
+                               const std::vector<std::vector<double>>& start) {
+  return Program(rule, base, capacity, start).take();
+}
+
+}  // namespace cuboct
