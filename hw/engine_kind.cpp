@@ -7,6 +7,7 @@
 
 #include "hw/state_bounds.h"
 #include "model/run/golden_engine.h"
+#include "model/run/integer_run.h"
 #include "model/run/reference_engine.h"
 #include "model/run/static_engine.h"
 
@@ -50,8 +51,18 @@ State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
   return from ? checked_state(*from, plan) : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
 }
 
+ProgramSetting program_setting(const Plan& plan) {
+  return {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
+}
+
 EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   EngineKind kind = fixed_kind("golden", scene, plan);
+  if (plan.program != nullptr) {
+    kind.make = [&scene, &plan](CheckpointReader*, bool) {
+      return std::make_unique<IntegerRun>(scene, scene.body, program_setting(plan));
+    };
+    return kind;
+  }
   kind.saves = true;
   kind.make = [&scene, &plan](CheckpointReader* from, bool) {
     return std::make_unique<GoldenEngine>(setting_of(scene, plan), plan.arch.capacity,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@
 #include "model/contract/state.h"
 
 namespace cuboct {
+
+struct IntegerProgram;  // model/program/integer_program.h
 
 // Registers of the filter with wide memories: a candidate's answer, the one chosen, sizes, masks.
 inline constexpr int kFilterStages = 4;
@@ -45,6 +48,8 @@ struct Plan {
   LinkCode link;
   std::vector<uint8_t> cut;  // by node, bit f: the link over face f leads to another device; empty on one
   uint32_t particles = 0;
+  // Of a rule that is text; null: the pair law's formats are in `rule`.
+  std::shared_ptr<const IntegerProgram> program;
   uint64_t hash = 0;  // of everything above that an engine can see
   // For people: why formats and capacity are what they are, and what they cannot do.
   std::vector<WidthReason> reasons;

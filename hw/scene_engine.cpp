@@ -16,6 +16,17 @@
 
 namespace cuboct {
 
+namespace {
+
+// Golden runs a rule that is text in integers.
+bool runs_text(const Scene& scene, const std::string& engine) {
+  const RoundsRule* rounds = rounds_of(scene.rule);
+  const EngineRow* row = find_engine(engine);
+  return rounds != nullptr && rounds->text() != nullptr && row != nullptr && row->here == Here::golden;
+}
+
+}  // namespace
+
 std::string engine_for(const Scene& scene) {
   return scene.loading || rounds_of(scene.rule) != nullptr ? "reference" : "lattice";
 }
@@ -24,10 +35,12 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
   if (engine_row(engine).here == Here::reference) return;
   const std::string who = fmt::format("the {} engine", engine);
   refuse_static(scene, who);
+  if (runs_text(scene, engine)) return;
   with_places(scene, arch, [&] { refuse_rounds(scene.rule, who); });
 }
 
 Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine) {
+  if (runs_text(scene, engine)) return program_plan_of(scene, arch);
   if (rounds_of(scene.rule) != nullptr) return real_plan_of(scene, arch);
   const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
   const bool doubles = row != nullptr && row->here == Here::reference;

@@ -12,7 +12,11 @@
 
 #include "hw/cell_box.h"
 #include "hw/reach.h"
-#include "model/rules/rounds_rule.h"
+#include "model/base/hash.h"
+#include "model/contract/quantise.h"
+#include "model/graph/certificate.h"
+#include "model/program/integer_program.h"
+#include "model/program/program_rule.h"
 
 namespace cuboct {
 namespace {
@@ -137,17 +141,37 @@ std::vector<Cell> filled_box(const std::vector<Cell>& cells, const Arch& arch) {
   return box;
 }
 
+const RuleProgram* text_of(const Rule& rule) {
+  const RoundsRule* rounds = rounds_of(rule);
+  return rounds == nullptr ? nullptr : rounds->text();
+}
+
+void add_program(const RuleProgram& text, const Scene& scene, Plan& plan) {
+  plan.program = std::make_shared<IntegerProgram>(integer_program(
+      text, plan.rule, plan.arch.capacity, starts_of(text, scene.rule, scene.body, scene.periodic)));
+  const std::string certificate = graph::certificate_of(plan.program->program);
+  if (const graph::Refusal refusal = graph::refusal_of(certificate); refusal.line != 0)
+    throw std::logic_error(
+        fmt::format("line {} of the program's certificate: {}", refusal.line, refusal.what));
+  Hash hash;
+  hash.add(static_cast<int64_t>(plan.hash));
+  for (const char c : certificate) hash.add(c);
+  plan.hash = hash.value();
+}
+
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
-Plan plan_with(const Scene& scene, Arch arch, See see) {
-  refuse_rounds(scene.rule, "a machine");
+Plan plan_with(const Scene& scene, Arch arch, See see, bool programs = false) {
+  const RuleProgram* text = programs ? text_of(scene.rule) : nullptr;
+  if (text == nullptr) refuse_rounds(scene.rule, "a machine");
   const double edge = cell_edge_of(scene, arch);
   // Cells start a quarter of an edge below the packing, so that the planes of an aligned crystal do not lie
   // on faces; along z a flat body's only plane does.
   Vec3 origin = Vec3::Constant(INFINITY);
   for (const Vec3& x : scene.packing().x) origin = origin.cwiseMin(x);
   const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
-  FixedRule rule = fixed_rule(scene, arch, edge, chosen);
+  FixedRule rule = text != nullptr ? quantise_without_law(scene.rule, edge, chosen.widths)
+                                   : fixed_rule(scene, arch, edge, chosen);
   arch.widths = rule.widths;
   arch.table.index_bits = rule.force.index_bits;
   const double lowest = origin[2];
@@ -188,11 +212,13 @@ Plan plan_with(const Scene& scene, Arch arch, See see) {
                   "a cell, as long as the pair law's cutoff, holds at most {}: a shorter cutoff, or doubles "
                   "(--engine reference)",
                   kMostCapacity));
-  std::vector<std::string> warnings = width_warnings(scene, edge, chosen, rule);
+  std::vector<std::string> warnings;
+  if (text == nullptr) warnings = width_warnings(scene, edge, chosen, rule);
   for (const MeshFacts& mesh : scene.meshes)
     if (std::string warning = mesh_warning(mesh); !warning.empty()) warnings.push_back(std::move(warning));
   Plan plan = make_plan(std::move(rule), std::move(arch), std::move(lattice), origin,
                         static_cast<uint32_t>(scene.body.size()));
+  if (text != nullptr) add_program(*text, scene, plan);
   plan.reasons = chosen.reasons;
   plan.warnings = std::move(warnings);
   return plan;
@@ -240,6 +266,13 @@ Arch settled(const Scene& scene, Arch arch) {
 
 Plan plan_of(const Scene& scene, const Arch& arch) {
   return with_places(scene, arch, [&] { return plan_with(scene, arch, [](const Particle&) {}); });
+}
+
+Plan program_plan_of(const Scene& scene, const Arch& arch) {
+  return with_places(scene, arch, [&] {
+    return plan_with(
+        scene, arch, [](const Particle&) {}, true);
+  });
 }
 
 Setup make_setup(const Scene& scene, const Arch& arch) {

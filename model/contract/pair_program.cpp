@@ -112,14 +112,25 @@ class PairGraph {
   Builder b_;
 };
 
-class FinishGraph {
+class MotionGraph {
  public:
-  FinishGraph(const FixedRule& rule, FixedProgram& program, graph::Round& round)
-      : rule_(rule), program_(program), round_(round) {}
+  MotionGraph(const FixedRule& rule, FixedProgram& program, Builder& builder)
+      : rule_(rule), program_(program), b_(builder) {}
 
-  void make() {
-    for (int a = 0; a < program_.axes; ++a) add_axis(a);
-    round_.finish = b_.take();
+  void add_axis(int axis, int kick) {
+    const auto a = static_cast<size_t>(axis);
+    const int frac = rule_.widths.velocity_frac();
+    const int target = constant(along("target", axis), frac, [=](auto& type) { return type.velocity[a]; });
+    const int imposed = constant(along("imposed", axis), 0, [=](auto& type) { return type.imposed[a]; });
+    const int gravity = constant(along("gravity", axis), frac, [=](auto& type) { return type.gravity[a]; });
+    const int free = b_.negate(imposed), v = read_velocity(b_, program_, Source::own_v, axis);
+    const int dv = gain(axis, kick, free, b_.sub(v, target));
+    const int sum = b_.add(b_.add(v, dv), gravity);
+    const int moved = b_.check(sum, rule_.widths.velocity_bits, Fault::velocity, free);
+    const int next = b_.named(b_.select(imposed, target, moved), along("v", axis));
+    program_.motion.v.push_back(next);
+    program_.motion.drift.push_back(next);
+    if (rule_.pd) program_.motion.u.push_back(displacement(axis, b_.sub(next, target)));
   }
 
  private:
@@ -130,26 +141,9 @@ class FinishGraph {
     return read_constant(b_, program_, Source::own_constant, constant);
   }
 
-  void add_axis(int axis) {
-    const auto a = static_cast<size_t>(axis);
-    const int frac = rule_.widths.velocity_frac();
-    const int target = constant(along("target", axis), frac, [=](auto& type) { return type.velocity[a]; });
-    const int imposed = constant(along("imposed", axis), 0, [=](auto& type) { return type.imposed[a]; });
-    const int gravity = constant(along("gravity", axis), frac, [=](auto& type) { return type.gravity[a]; });
-    const int free = b_.negate(imposed), v = read_velocity(b_, program_, Source::own_v, axis);
-    const int dv = gain(axis, free, b_.sub(v, target));
-    const int sum = b_.add(b_.add(v, dv), gravity);
-    const int moved = b_.check(sum, rule_.widths.velocity_bits, Fault::velocity, free);
-    const int next = b_.named(b_.select(imposed, target, moved), along("v", axis));
-    program_.motion.v.push_back(next);
-    program_.motion.drift.push_back(next);
-    if (rule_.pd) program_.motion.u.push_back(displacement(axis, b_.sub(next, target)));
-  }
-
   // What kicks and controllers add to a velocity. The sum of an imposed axis may be of any size.
-  int gain(int axis, int free, int off) {
-    const int sum = read_sum(b_, program_, round_, 0, axis);
-    int dv = b_.check(sum, rule_.widths.sum_bits, Fault::sum, free);
+  int gain(int axis, int kick, int free, int off) {
+    int dv = b_.check(kick, rule_.widths.sum_bits, Fault::sum, free);
     if (rule_.weighted)
       dv = b_.mul(dv, constant("weight", kWeightFrac, [](auto& type) { return type.weight; }), kWeightFrac);
     if (!rule_.pd) return dv;
@@ -168,11 +162,16 @@ class FinishGraph {
 
   const FixedRule& rule_;
   FixedProgram& program_;
-  graph::Round& round_;
-  Builder b_;
+  Builder& b_;
 };
 
 }  // namespace
+
+void add_motion(Builder& builder, FixedProgram& program, const FixedRule& rule,
+                const std::vector<int>& kicks) {
+  MotionGraph motion(rule, program, builder);
+  for (int a = 0; a < program.axes; ++a) motion.add_axis(a, kicks[static_cast<size_t>(a)]);
+}
 
 FixedProgram pair_program(const FixedRule& rule, int capacity) {
   FixedProgram program;
@@ -185,7 +184,12 @@ FixedProgram pair_program(const FixedRule& rule, int capacity) {
   program.velocity = of_bits(rule.widths.velocity_bits);
   program.displacement = of_bits(rule.widths.displacement_bits);
   program.rounds.push_back(PairGraph(rule, program).made());
-  FinishGraph(rule, program, program.rounds.back()).make();
+  graph::Round& round = program.rounds.back();
+  Builder finish;
+  std::vector<int> kicks;
+  for (int a = 0; a < program.axes; ++a) kicks.push_back(read_sum(finish, program, round, 0, a));
+  add_motion(finish, program, rule, kicks);
+  round.finish = finish.take();
   graph::check(program);
   return program;
 }

@@ -2,7 +2,10 @@
 // The pair law as a program: docs/reference/numeric.md, node by node.
 #pragma once
 
+#include <vector>
+
 #include "model/contract/fixed_rule.h"
+#include "model/graph/builder.h"
 #include "model/graph/program.h"
 
 namespace cuboct {
@@ -10,5 +13,10 @@ namespace cuboct {
 // For cells of so many particles. It makes of each pair what pair_kick makes, and of each particle what
 // finish makes, faults included.
 graph::FixedProgram pair_program(const FixedRule& rule, int capacity);
+
+// The last finish of any program: what kicks, constraints and gravity make of a particle's velocity, place
+// and displacement. `kicks`: nodes of `builder`, by axis, P+G fractional bits, of the lightest material.
+void add_motion(graph::Builder& builder, graph::FixedProgram& program, const FixedRule& rule,
+                const std::vector<int>& kicks);
 
 }  // namespace cuboct

@@ -317,6 +317,76 @@ FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoic
   return octaves.error().worst_force < uniform.error().worst_force ? octaves : uniform;
 }
 
+// All but what the law brings.
+FixedRule framed(const Rule& rule, double cell_edge, const Widths& widths) {
+  const double cutoff = rule.cutoff();
+  if (cutoff > cell_edge * (1 + 1e-12))
+    throw InputError(
+        fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
+  FixedRule fixed;
+  fixed.widths = widths;
+  fixed.widths.filter_frac = std::min(widths.filter_frac, widths.position_frac);
+  fixed.cell_edge = cell_edge;
+  fixed.dt = rule.dt;
+  fixed.mass = rule.mass;
+  fixed.damped = rule.damping.coefficient > 0;
+
+  const int D = widths.difference_frac;
+  const double ratio = std::min(1.0, cutoff / cell_edge);
+  fixed.cutoff2 = static_cast<uint64_t>(std::llround(std::ldexp(ratio * ratio, 2 * D)));
+  if (fixed.cutoff2 == 0)
+    throw InputError(
+        fmt::format("a cutoff of {:.3g} m is less than a unit of a difference in cells of {:.3g} m", cutoff,
+                    cell_edge),
+        "a smaller cell_edge, or more bits of difference_frac")
+        .about({"node.cell_edge", "widths.difference_frac"});
+  set_planar(fixed);
+  fixed.difference_shift = widths.position_frac - D;
+  fixed.w_shift = widths.velocity_frac() - widths.relative_velocity_frac;
+  return fixed;
+}
+
+void add_types(const Rule& rule, FixedRule& fixed) {
+  const Widths& widths = fixed.widths;
+  const int frac = widths.velocity_frac();
+  const double length = fixed.cell_edge;
+  for (const ParticleType& type : rule.types) {
+    FixedType t;
+    const auto index = static_cast<int>(fixed.types.size());
+    t.weight = weight_of(rule, index);
+    fixed.weighted = fixed.weighted || t.weight != FixedType{}.weight;
+    t.imposed = type.imposed;
+    t.pd = type.pd;
+    for (int a = 0; a < 3; ++a) {
+      const double velocity = rule.dt / length, gravity = velocity * rule.dt;
+      const Quantity imposed{"an imposed velocity", type.velocity[a] * velocity,
+                             type.velocity.norm() * velocity, 1, keys_of(type, "velocity")};
+      t.velocity[a] = quantised(imposed, rule.dt, frac, widths.velocity_bits,
+                                [&] { return guard_that_keeps(imposed.whole, widths); });
+      const bool pulled = !type.pull.isZero(0);
+      std::vector<std::string> keys = {"gravity"};
+      for (const char* key : {"traction", "force"})
+        if (pulled) keys.insert(keys.begin(), keys_of(type, key).front());
+      const Quantity weight{pulled ? "the acceleration by a force" : "gravity", type.gravity[a] * gravity,
+                            std::max(type.gravity.norm(), type.pull.norm()) * gravity, 2, keys};
+      t.gravity[a] = quantised(weight, rule.dt, frac, widths.velocity_bits,
+                               [&] { return guard_that_keeps(weight.whole, widths); });
+    }
+    if (type.pd) {
+      const double mass = rule.mass_of(index);
+      const double kp = type.kp * rule.dt * rule.dt / mass, kd = type.kd * rule.dt / mass;
+      const auto keeps = [&] { return gains_that_are_kept(rule, static_cast<size_t>(index)); };
+      t.kp = quantised({"the gain kp", kp, kp, 2, keys_of(type, "kp")}, rule.dt, widths.gain_frac, kGainBits,
+                       keeps);
+      t.kd = quantised({"the gain kd", kd, kd, 1, keys_of(type, "kd")}, rule.dt, widths.gain_frac, kGainBits,
+                       keeps);
+      fixed.pd = true;
+    }
+    fixed.types.push_back(t);
+  }
+  fixed.type_bits = fixed.types.size() > 1 ? std::bit_width(fixed.types.size() - 1) : 0;
+}
+
 }  // namespace
 
 FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
@@ -342,28 +412,9 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   }
   const TableChoice& choice = table;
   check_widths(widths, choice);
+  FixedRule fixed = framed(rule, cell_edge, widths);
   const double cutoff = rule.cutoff();
-  if (cutoff > cell_edge * (1 + 1e-12))
-    throw InputError(
-        fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
-  FixedRule fixed;
-  fixed.widths = widths;
-  fixed.widths.filter_frac = std::min(widths.filter_frac, widths.position_frac);
-  fixed.cell_edge = cell_edge;
-  fixed.dt = rule.dt;
-  fixed.mass = rule.mass;
-  fixed.damped = rule.damping.coefficient > 0;
-
   const int D = widths.difference_frac;
-  const double ratio = std::min(1.0, cutoff / cell_edge);
-  fixed.cutoff2 = static_cast<uint64_t>(std::llround(std::ldexp(ratio * ratio, 2 * D)));
-  if (fixed.cutoff2 == 0)
-    throw InputError(
-        fmt::format("a cutoff of {:.3g} m is less than a unit of a difference in cells of {:.3g} m", cutoff,
-                    cell_edge),
-        "a smaller cell_edge, or more bits of difference_frac")
-        .about({"node.cell_edge", "widths.difference_frac"});
-  set_planar(fixed);
 
   double scale = 0;
   for (const auto& row : rule.strength) scale = std::max(scale, *std::max_element(row.begin(), row.end()));
@@ -403,8 +454,6 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   fixed = with_tables(fixed, rule, choice, scale, fits_octaves);
 
   const int frac = widths.velocity_frac();
-  fixed.difference_shift = widths.position_frac - D;
-  fixed.w_shift = frac - widths.relative_velocity_frac;
   fixed.q_shift = D + 1;
   fixed.damp_shift =
       fixed.damped ? fixed.damp.value_frac + widths.relative_velocity_frac - 1 - fixed.force.value_frac : 0;
@@ -425,42 +474,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
         damping_that_fits(fixed.widths, -fixed.damp_shift))
         .about({"damping.coefficient", "damping.ratio"});
 
-  const double length = cell_edge;
-  for (const ParticleType& type : rule.types) {
-    FixedType t;
-    const auto index = static_cast<int>(fixed.types.size());
-    t.weight = weight_of(rule, index);
-    fixed.weighted = fixed.weighted || t.weight != FixedType{}.weight;
-    t.imposed = type.imposed;
-    t.pd = type.pd;
-    for (int a = 0; a < 3; ++a) {
-      const double velocity = rule.dt / length, gravity = velocity * rule.dt;
-      const Quantity imposed{"an imposed velocity", type.velocity[a] * velocity,
-                             type.velocity.norm() * velocity, 1, keys_of(type, "velocity")};
-      t.velocity[a] = quantised(imposed, rule.dt, frac, widths.velocity_bits,
-                                [&] { return guard_that_keeps(imposed.whole, widths); });
-      const bool pulled = !type.pull.isZero(0);
-      std::vector<std::string> keys = {"gravity"};
-      for (const char* key : {"traction", "force"})
-        if (pulled) keys.insert(keys.begin(), keys_of(type, key).front());
-      const Quantity weight{pulled ? "the acceleration by a force" : "gravity", type.gravity[a] * gravity,
-                            std::max(type.gravity.norm(), type.pull.norm()) * gravity, 2, keys};
-      t.gravity[a] = quantised(weight, rule.dt, frac, widths.velocity_bits,
-                               [&] { return guard_that_keeps(weight.whole, widths); });
-    }
-    if (type.pd) {
-      const double mass = rule.mass_of(index);
-      const double kp = type.kp * rule.dt * rule.dt / mass, kd = type.kd * rule.dt / mass;
-      const auto keeps = [&] { return gains_that_are_kept(rule, static_cast<size_t>(index)); };
-      t.kp = quantised({"the gain kp", kp, kp, 2, keys_of(type, "kp")}, rule.dt, widths.gain_frac, kGainBits,
-                       keeps);
-      t.kd = quantised({"the gain kd", kd, kd, 1, keys_of(type, "kd")}, rule.dt, widths.gain_frac, kGainBits,
-                       keeps);
-      fixed.pd = true;
-    }
-    fixed.types.push_back(t);
-  }
-  fixed.type_bits = fixed.types.size() > 1 ? std::bit_width(fixed.types.size() - 1) : 0;
+  add_types(rule, fixed);
   if (fixed.scaled)
     for (size_t i = 0; i < rule.types.size(); ++i) {
       fixed.scale.emplace_back();
@@ -476,6 +490,13 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
               static_cast<uint8_t>(rule.law_index_of(static_cast<int>(i), static_cast<int>(j))));
       }
     }
+  return fixed;
+}
+
+FixedRule quantise_without_law(const Rule& rule, double cell_edge, const Widths& widths) {
+  check_widths(widths, {});
+  FixedRule fixed = framed(rule, cell_edge, widths);
+  add_types(rule, fixed);
   return fixed;
 }
 

@@ -20,7 +20,9 @@ struct Parabola {
   std::array<double, 3> c{};
 };
 
-int octave_of(double argument) { return argument < 1 ? 0 : static_cast<int>(std::floor(std::log2(argument))); }
+int octave_of(double argument) {
+  return argument < 1 ? 0 : static_cast<int>(std::floor(std::log2(argument)));
+}
 
 }  // namespace
 

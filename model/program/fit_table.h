@@ -9,7 +9,7 @@
 namespace cuboct {
 
 struct TableRoom {
-  int bits = 0;     // of the argument, which is an integer of `step` each
+  int bits = 0;  // of the argument, which is an integer of `step` each
   double step = 1;
   double from = 0;  // the table begins with the octave that holds it
   double to = 0;    // beyond it the function is worth what it is there

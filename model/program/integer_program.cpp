@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "model/base/error.h"
+#include "model/contract/pair_program.h"
 #include "model/program/integers.h"
 
 namespace cuboct {
@@ -18,9 +19,9 @@ using graph::Builder;
 using graph::FixedProgram;
 using Source = RealSource;
 
-constexpr int kFieldBits = 46;     // of a field that goes on
-constexpr int kSumBits = 50;       // of a sum
-constexpr double kSteepest = 32;   // a table begins where its function is so many times what it is further out
+constexpr int kFieldBits = 46;    // of a field that goes on
+constexpr int kSumBits = 50;      // of a sum
+constexpr double kSteepest = 32;  // a table begins where its function is so many times what it is further out
 constexpr double kFurther = 0.55;  // of the reach
 constexpr double kNearest = 1.0 / 64;
 
@@ -92,7 +93,11 @@ class Radial {
 class Lowering {
  public:
   Lowering(const RealGraph& graph, Builder& builder, std::function<Scaled(const RealInput&)> input)
-      : graph_(graph), b_(builder), integers_(builder), input_(std::move(input)), made_(graph.nodes().size()) {}
+      : graph_(graph),
+        b_(builder),
+        integers_(builder),
+        input_(std::move(input)),
+        made_(graph.nodes().size()) {}
 
   // Of a pair: r2 as a node, and up to where it counts, m^2.
   void pairs(const Radial& radial, const Scaled& r2, double reach2) {
@@ -131,7 +136,8 @@ class Lowering {
     if (node.op == RealOp::constant) return Scaled::of(node.value);
     if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
     if (of_r(id) && !is_truth(node.op))
-      return table(fmt::format("node {}", id), [&](double r2) { return radial_->at(id, r2); }, unit);
+      return table(
+          fmt::format("node {}", id), [&](double r2) { return radial_->at(id, r2); }, unit);
     const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
     switch (node.op) {
       case RealOp::input:
@@ -185,8 +191,9 @@ class Lowering {
     if (of_r(b)) {
       const Scaled x = value(a);
       const double left = x.constant() ? (x.number != 0 ? unit / std::abs(x.number) : 0) : unit / x.unit;
-      return integers_.multiply(
-          x, table("a reciprocal", [&](double r2) { return 1 / radial_->at(b, r2); }, left));
+      return integers_.multiply(x,
+                                table(
+                                    "a reciprocal", [&](double r2) { return 1 / radial_->at(b, r2); }, left));
     }
     const Scaled x = value(a, 0), y = value(b);
     if (!y.constant()) {
@@ -199,7 +206,8 @@ class Lowering {
   // A function of one value that is no function of r: by a table of 14 octaves below the value's largest.
   Scaled of_one(const RealNode& node, const Scaled& a) {
     if (!a.constant() && b_.range(a.node).low < 0)
-      refuse("a root, a power, a quotient, exp, log, sin or cos of what may be negative is not in integers yet");
+      refuse(
+          "a root, a power, a quotient, exp, log, sin or cos of what may be negative is not in integers yet");
     const double exponent = node.op == RealOp::power ? graph_.at(node.of[1]).value : 0;
     const auto f = [&](double x) {
       return node.op == RealOp::divide ? 1 / x : applied(node.op, x, exponent, 0);
@@ -217,12 +225,16 @@ class Lowering {
     for (int k = 0; k <= kSamples; ++k)
       usual = std::max(usual, std::abs(at(kFurther + (1 - kFurther) * k / kSamples)));
     double from = kFurther;
-    while (from > kNearest && std::isfinite(at(0.97 * from)) && std::abs(at(0.97 * from)) <= kSteepest * usual)
+    while (from > kNearest && std::isfinite(at(0.97 * from)) &&
+           std::abs(at(0.97 * from)) <= kSteepest * usual)
       from *= 0.97;
     const Scaled of_r2 = r2_;
     const double core2 = from > kNearest ? from * from * reach2_ : 0;
-    const auto kept = [&](double r2) { return f(std::max(r2, std::max(core2, kNearest * kNearest * reach2_))); };
-    Scaled value = integers_.function(of_r2, kept, std::max(core2, kNearest * kNearest * reach2_), reach2_, unit);
+    const auto kept = [&](double r2) {
+      return f(std::max(r2, std::max(core2, kNearest * kNearest * reach2_)));
+    };
+    Scaled value =
+        integers_.function(of_r2, kept, std::max(core2, kNearest * kNearest * reach2_), reach2_, unit);
     if (core2 > 0) value.node = guarded(value.node, core2);
     return value;
   }
@@ -285,8 +297,8 @@ class Program {
       int exponent = 0;
       std::frexp(size, &exponent);
       const int frac = field.kind == Value::Kind::truth ? 0 : kFieldBits - 1 - exponent;
-      const graph::Interval room = field.kind == Value::Kind::truth ? graph::Interval{0, 1}
-                                                                    : of_bits(kFieldBits);
+      const graph::Interval room =
+          field.kind == Value::Kind::truth ? graph::Interval{0, 1} : of_bits(kFieldBits);
       out_.program.fields.push_back({field.name, static_cast<int>(field.numbers()), room, frac});
       out_.scales.push_back({1, frac});
       out_.field.push_back(k);
@@ -394,6 +406,53 @@ class Program {
              node.input == RealInput{Source::sum, static_cast<uint32_t>(term)};
     });
   }
+  // What a finish adds to a field as it is, but for a constant: the sum of its terms changes fields by what
+  // it is to the last bit, so that nothing is lost where they are odd. The unit and the fraction of the
+  // terms.
+  std::optional<FieldScale> added_to_field(size_t k, size_t term) const {
+    const RealGraph& finish = rule_.rounds[k].finish;
+    for (const ProgramWrite& write : rule_.rounds[k].made) {
+      const RealNode& node = finish.at(write.node);
+      if (place_[write.number] < 0 || node.op != RealOp::add) continue;
+      for (size_t side = 0; side < 2; ++side) {
+        const RealNode& field = finish.at(node.of[side]);
+        if (field.op != RealOp::input || field.input != RealInput{Source::own_field, write.number}) continue;
+        const std::optional<double> factor =
+            factor_of(finish, node.of[1 - side], static_cast<uint32_t>(term));
+        if (!factor || !(*factor > 0)) continue;
+        return FieldScale{1 / *factor, out_.program.fields[static_cast<size_t>(place_[write.number])].frac};
+      }
+    }
+    return std::nullopt;
+  }
+  // c where the node is c times the sum, and c is a constant.
+  std::optional<double> factor_of(const RealGraph& graph, NodeId id, uint32_t sum) const {
+    std::vector<std::optional<double>> at_one(id + 1), at_two(id + 1);
+    const auto value = [&](const std::vector<std::optional<double>>& values, const RealNode& node,
+                           double s) -> std::optional<double> {
+      if (node.op == RealOp::constant) return node.value;
+      if (node.op == RealOp::input) {
+        if (node.input == RealInput{Source::sum, sum}) return s;
+        if (node.input.source == Source::time_step) return base_.dt;
+        if (node.input.source == Source::own_mass && !base_.weighted) return base_.mass;
+        return std::nullopt;
+      }
+      std::array<double, 3> of{};
+      for (int n = 0; n < arity(node.op); ++n) {
+        const auto& part = values[node.of[static_cast<size_t>(n)]];
+        if (!part) return std::nullopt;
+        of[static_cast<size_t>(n)] = *part;
+      }
+      return applied(node.op, of[0], of[1], of[2]);
+    };
+    for (NodeId n = 0; n <= id; ++n) {
+      at_one[n] = value(at_one, graph.at(n), 1);
+      at_two[n] = value(at_two, graph.at(n), 2);
+    }
+    if (!at_one[id] || std::abs(*at_two[id] - 2 * *at_one[id]) > 1e-14 * std::abs(*at_two[id]))
+      return std::nullopt;
+    return at_one[id];
+  }
   double kick_unit() const { return base_.mass * base_.cell_edge / (base_.dt * base_.dt); }
 
   std::vector<SumScale> add_terms(size_t k, Lowering& pair, Builder& b, graph::Round& round) {
@@ -405,11 +464,17 @@ class Program {
       Scaled term;
       if (is_force(k, n)) {
         const int frac = base_.widths.velocity_frac();
-        const Scaled value = pair.integers().select(when, pair.value(from.terms[n], kick_unit()), Scaled::of(0));
+        const Scaled value =
+            pair.integers().select(when, pair.value(from.terms[n], kick_unit()), Scaled::of(0));
         term = Integers::scaled(pair.integers().node_in(value, kick_unit(), frac), frac, kick_unit());
+      } else if (const auto added = added_to_field(k, n)) {
+        term = pair.integers().select(when, pair.value(from.terms[n], added->unit), Scaled::of(0));
+        term = Integers::scaled(pair.integers().node_in(term, added->unit, added->frac), added->frac,
+                                added->unit);
       } else {
         term = pair.integers().select(when, pair.value(from.terms[n]), Scaled::of(0));
-        if (term.constant()) term = {pair.integers().node_of(term), 0, b.frac(pair.integers().node_of(term)), 1};
+        if (term.constant())
+          term = {pair.integers().node_of(term), 0, b.frac(pair.integers().node_of(term)), 1};
         term = pair.integers().narrow(term, kSumBits - spare);
       }
       scales.push_back({term, static_cast<int>(round.sums.size()), 0});
@@ -469,8 +534,14 @@ class Program {
       }
       return;
     }
-    static_cast<void>(finish), static_cast<void>(from);
-    refuse("rules that move particles are not in integers yet");
+    std::vector<int> kicks;
+    for (int a = 0; a < base_.axes; ++a) {
+      const uint32_t number = rule_.force + static_cast<uint32_t>(a);
+      const auto write = std::ranges::find(from.made, number, &ProgramWrite::number);
+      kicks.push_back(
+          finish.integers().node_in(finish.value(write->node), kick_unit(), base_.widths.velocity_frac()));
+    }
+    add_motion(b, out_.program, base_, kicks);
   }
 
   const RuleProgram& rule_;

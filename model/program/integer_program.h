@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A rule's text in integers: its graphs, whose values count in steps and cell edges, as golden runs them.
 //
-// Formats. A field has 46 bits over its range; a factor 26, a product 52; a sum what its partners leave of 51.
-// What depends on r alone is one table of octaves. A constant factor changes the unit of a value and costs
-// nothing. docs/reference/graph.md.
+// Formats. A field has 46 bits over its range; a factor 26, a product 52; a sum what its partners leave
+// of 51. What depends on r alone is one table of octaves. A constant factor changes the unit of a value and
+// costs nothing. docs/reference/graph.md.
 #pragma once
 
 #include <string>

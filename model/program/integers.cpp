@@ -63,10 +63,14 @@ Scaled Integers::multiply(const Scaled& a, const Scaled& b) {
 }
 
 Scaled Integers::in_unit(const Scaled& a, double unit) {
+  constexpr double kSame = 1e-12;  // what products of constants leave of one unit
   const Scaled target = scaled(0, 0, unit);
-  if (a.constant() || a.unit == target.unit) return a;
+  if (a.constant()) return a;
+  const double ratio = a.unit / target.unit;
+  const auto power = static_cast<int>(std::lround(std::log2(ratio)));
+  if (std::abs(std::ldexp(ratio, -power) - 1) < kSame) return {a.node, 0, a.frac - power, target.unit};
   const Scaled x = narrow(a, kFactor);
-  const auto factor = std::llround(std::ldexp(x.unit / target.unit, kFactor - 1));
+  const auto factor = std::llround(std::ldexp(ratio, kFactor - 1));
   return {b_.mul(x.node, b_.constant(factor, kFactor - 1)), 0, x.frac + kFactor - 1, target.unit};
 }
 
@@ -128,8 +132,7 @@ Scaled Integers::chosen(bool least, const Scaled& a, const Scaled& b) {
 }
 
 Scaled Integers::below(const Scaled& a, const Scaled& b, bool or_equal) {
-  if (a.constant() && b.constant())
-    return Scaled::of(or_equal ? a.number <= b.number : a.number < b.number);
+  if (a.constant() && b.constant()) return Scaled::of(or_equal ? a.number <= b.number : a.number < b.number);
   const auto [x, y] = alike(a, b);
   return {or_equal ? b_.le(x.node, y.node) : b_.lt(x.node, y.node), 0, 0, 1};
 }

@@ -44,7 +44,8 @@ class Integers {
 
   // f of an argument that is not negative, by a table of octaves whose values count in `unit` (0: any).
   // `from`: where it begins, below which it is worth what it is there. f is asked up to `to`.
-  Scaled function(const Scaled& a, const std::function<double(double)>& f, double from, double to, double unit);
+  Scaled function(const Scaled& a, const std::function<double(double)>& f, double from, double to,
+                  double unit);
 
   // At most so many bits beside the sign.
   Scaled narrow(const Scaled& a, int bits);

@@ -107,6 +107,7 @@ class ProgramTerms final : public RoundsTerms {
     keeps ? lay_down() : take_up();
   }
   const std::vector<Vec3>& force() const override { return force_; }
+  const std::vector<std::vector<double>>& fields() const { return work_; }
 
   double energy() const override {
     double sum = 0;
@@ -422,6 +423,15 @@ std::unique_ptr<RoundsTerms> ProgramRule::bind(const Rule& rule, const Body& bod
                                                int) const {
   auto terms = std::make_unique<ProgramTerms>(program_, rule, body, periodic);
   return terms;
+}
+
+std::vector<std::vector<double>> starts_of(const RuleProgram& program, const Rule& rule, const Body& body,
+                                           const Periodic& periodic) {
+  Body packed = body;
+  if (body.bonds) packed.x = body.bonds->packed;
+  ProgramTerms terms(program, rule, packed, periodic);
+  recall_bonds(terms, body);
+  return terms.fields();
 }
 
 }  // namespace cuboct

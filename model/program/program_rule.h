@@ -15,7 +15,7 @@ class ProgramRule final : public RoundsRule {
  public:
   explicit ProgramRule(RuleProgram program) : program_(std::move(program)) {}
 
-  const RuleProgram& program() const { return program_; }
+  const RuleProgram* text() const override { return &program_; }
   const RuleDeclaration& declaration() const override { return program_.declaration; }
   double reach() const override { return program_.reach; }
   double bond_reach() const override;
@@ -29,5 +29,10 @@ class ProgramRule final : public RoundsRule {
  private:
   RuleProgram program_;
 };
+
+// What the particle fields of a rule's text begin with, by number, by particle: of the body as packed, or
+// what Body::bonds kept.
+std::vector<std::vector<double>> starts_of(const RuleProgram& program, const Rule& rule, const Body& body,
+                                           const Periodic& periodic);
 
 }  // namespace cuboct

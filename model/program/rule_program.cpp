@@ -48,7 +48,7 @@ class Understanding {
       for (const RuleText::Field& field : from) {
         if (!names.insert(field.name).second)
           field.fail(fmt::format("the name '{}' is taken", field.name), {});
-        to.push_back({field.name, field.kind, numbers, false, field.shown});
+        to.push_back({field.name, field.kind, numbers, false, field.shown, field.range});
         numbers += to.back().numbers();
       }
     };
@@ -56,7 +56,8 @@ class Understanding {
     add(text_.bond, program_.bond, program_.bond_numbers);
     if (text_.still) return;
     program_.force = program_.particle_numbers;
-    program_.particle.push_back({kForceField, Kind::vector, program_.force, false, false});
+    program_.particle.push_back(
+        {.name = kForceField, .kind = Kind::vector, .first = program_.force, .shown = false});
     program_.particle_numbers += 3;
   }
 

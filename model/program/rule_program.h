@@ -18,10 +18,11 @@ namespace cuboct {
 struct ProgramField {
   std::string name;
   Value::Kind kind = Value::Kind::number;
-  uint32_t first = 0;           // of its numbers
-  bool kept = false;            // goes on from step to step
-  bool shown = true;            // in frames
-  std::vector<NodeId> start{};  // of the graph of starts
+  uint32_t first = 0;                                // of its numbers
+  bool kept = false;                                 // goes on from step to step
+  bool shown = true;                                 // in frames
+  std::optional<std::pair<double, double>> range{};  // SI
+  std::vector<NodeId> start{};                       // of the graph of starts
   uint32_t numbers() const { return kind == Value::Kind::vector ? 3 : 1; }
 };
 

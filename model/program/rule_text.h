@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/program/formula.h"
@@ -27,8 +28,9 @@ struct RuleText {
     Dimension dimension;
     std::string unit;  // as it was written; empty: a plain number
     std::string what;
-    bool shown = true;             // of particles: in frames
-    std::optional<Formula> start;  // else 0, or false
+    bool shown = true;                               // of particles: in frames
+    std::optional<std::pair<double, double>> range;  // SI, least and greatest, which integers need
+    std::optional<Formula> start;                    // else 0, or false
     std::function<void(const std::string& message, const std::string& hint)> fail;
   };
   struct Sum {

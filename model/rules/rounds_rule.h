@@ -49,9 +49,14 @@ class RoundsTerms {
   virtual uint64_t memory_hash() const { return 0; }
 };
 
+struct RuleProgram;  // model/program/rule_program.h
+
 class RoundsRule {
  public:
   virtual ~RoundsRule() = default;
+
+  // Of a rule that is text; null: it is written in C++.
+  virtual const RuleProgram* text() const { return nullptr; }
 
   virtual const RuleDeclaration& declaration() const = 0;
   // The chemical element whose atoms the particles are; empty: none.

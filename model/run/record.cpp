@@ -394,7 +394,8 @@ void Loop::finish() {
   const bool sample = request_.last && request_.energies && !among(request_.probes, last);
   const bool look = request_.last && meter_.watch() && looked_ != last;
   const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
-  const bool bonds = request_.last && !request_.frames.empty() && has_reference_bonds(scene_.rule);
+  const bool bonds = request_.last && !request_.frames.empty() &&
+                     (has_reference_bonds(scene_.rule) || has_memory(scene_.rule));
   if (lost_ && (sample || look || hash || frame || bonds || request_.totals)) go_back_to(last);
   {
     const Timed timed({&trace_.seconds, &besides_});

@@ -29,11 +29,11 @@ Body completed(const Scene& scene, const Body& start) {
 RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
                      uint64_t step)
     : scene_(scene),
-      options_(std::make_unique<RealOptions>(options)),
-      cell_edge_(cell_edge),
       step_(step),
       body_(completed(scene, body)),
-      engine_(make_rounds_engine(scene.rule, body_, scene.periodic, options)) {}
+      engine_(make_rounds_engine(scene.rule, body_, scene.periodic, options)),
+      options_(std::make_unique<RealOptions>(options)),
+      cell_edge_(cell_edge) {}
 RoundsRun::~RoundsRun() = default;
 
 void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
@@ -48,8 +48,10 @@ void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
   }
 }
 
+void RoundsRun::renew() { engine_->read(body_); }
+
 const Body& RoundsRun::body() {
-  if (stale_) engine_->read(body_);
+  if (stale_) renew();
   stale_ = false;
   return body_;
 }

@@ -39,18 +39,22 @@ class RoundsRun : public Engine {
   bool breaks() const;
   std::vector<double> damage() const;
 
- private:
+ protected:
   const Body& body();
+  // Fills body_ from the engine's state, where that has gone on.
+  virtual void renew();
   // As Reading::fields.
   std::vector<std::vector<double>> fields_of(std::span<const uint32_t> ids);
 
   const Scene& scene_;
+  uint64_t step_;
+  bool stale_ = false;
+  Body body_;
+  std::unique_ptr<RealEngine> engine_;
+
+ private:
   std::unique_ptr<RealOptions> options_;
   double cell_edge_;
-  uint64_t step_;
-  Body body_;
-  bool stale_ = false;
-  std::unique_ptr<RealEngine> engine_;
 };
 
 // From `start` instead of the scene's body.

@@ -96,6 +96,12 @@ RuleText::Field field_of(const ConfigTable& table) {
     field.unit = unit->string();
     field.dimension = quantity_of(*unit, "1 " + field.unit).dimension;
   }
+  if (const auto range = table.find("range")) {
+    const std::vector<double> ends = range->numbers({field.dimension, "two values", "[0, 1]"});
+    if (ends.size() != 2 || !(ends[0] < ends[1]))
+      range->fail("'range' needs the least and the greatest value");
+    field.range = {ends[0], ends[1]};
+  }
   field.what = table.string_or("what", "");
   field.start = formula_at(table, "start");
   field.fail = failing(table);

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "model/run/integer_run.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "model/program/program_rule.h"
+#include "model/real/real_engine.h"
+
+namespace cuboct {
+namespace {
+
+const RuleProgram& text_of(const Scene& scene) { return *rounds_of(scene.rule)->text(); }
+
+// Reads one number of a field back.
+double real_of(const FieldScale& scale, int64_t number) {
+  return std::ldexp(scale.unit * static_cast<double>(number), -scale.frac);
+}
+
+State state_with_fields(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step) {
+  State state = to_fixed(body, setting.fixed, setting.lattice, setting.origin);
+  state.step = step;
+  const auto starts = starts_of(text_of(scene), scene.rule, body, scene.periodic);
+  const IntegerProgram& program = setting.program;
+  for (const Particle& particle : state.particles)
+    for (size_t f = 0; f < program.field.size(); ++f) {
+      const ProgramField& field = text_of(scene).particle[program.field[f]];
+      const graph::Interval range = program.program.fields[f].range;
+      for (uint32_t n = 0; n < field.numbers(); ++n) {
+        const double value = starts[field.first + n][particle.id] / program.scales[f].unit;
+        state.fields.push_back(std::clamp<int64_t>(std::llround(std::ldexp(value, program.scales[f].frac)),
+                                                   range.low, range.high));
+      }
+    }
+  return state;
+}
+
+}  // namespace
+
+IntegerRun::IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step)
+    : RoundsRun(scene, body, {}, setting.fixed.cell_edge, step),
+      setting_(setting),
+      golden_(setting.program.program, setting.lattice, setting.capacity,
+              state_with_fields(scene, body_, setting, step)) {
+  stale_ = true;
+}
+
+void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
+  for (; steps > 0; --steps) {
+    golden_.step();
+    step_ = golden_.step_count();
+    stale_ = true;
+    if (hashes != nullptr) hashes->push_back(hash());
+  }
+}
+
+uint64_t IntegerRun::hash() { return hash_of(setting_.lattice, golden_.state()); }
+
+Momentum IntegerRun::momentum() {
+  return {cuboct::momentum(setting_.fixed, golden_.state()), RoundsRun::momentum().real};
+}
+
+// Places, velocities and what the rule keeps of each particle, as its terms in doubles take them.
+void IntegerRun::renew() {
+  const State state = golden_.state();
+  body_ = with_bonds(scene_.rule, to_real(state, setting_.fixed, setting_.lattice, setting_.origin), body_);
+  const IntegerProgram& program = setting_.program;
+  const auto numbers = static_cast<size_t>(program.program.numbers());
+  std::vector<uint64_t> kept;
+  for (size_t f = 0, place = 0; f < program.field.size(); ++f) {
+    const ProgramField& field = text_of(scene_).particle[program.field[f]];
+    for (uint32_t n = 0; n < field.numbers(); ++n, ++place) {
+      if (!field.kept) continue;
+      for (size_t i = 0; i < state.particles.size(); ++i)
+        kept.push_back(
+            std::bit_cast<uint64_t>(real_of(program.scales[f], state.fields[i * numbers + place])));
+    }
+  }
+  engine_->place(body_);
+  engine_->recall(kept);
+}
+
+Counters IntegerRun::counters() { return {}; }
+
+Notes IntegerRun::notes() { return {{"rule", rounds_of(scene_.rule)->declaration().name}}; }
+
+}  // namespace cuboct

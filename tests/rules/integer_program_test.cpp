@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// Rules that are text, in integers: golden beside the same text in doubles.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "model/base/error.h"
+#include "model/contract/quantise.h"
+#include "model/graph/certificate.h"
+#include "model/graph/parity.h"
+#include "model/program/integer_program.h"
+#include "model/program/program_rule.h"
+#include "model/run/integer_run.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+namespace {
+
+const std::string kHere = CUBOCT_SOURCE_DIR "/scenes/rules/";
+
+// A scene's rule in integers, with cells of its reach.
+struct Made {
+  explicit Made(const std::string& text, int capacity = 16)
+      : scene(parse_scene(text, kHere + "test.toml")), room(capacity) {
+    const Rule& rule = scene.rule;
+    const double edge = rule.cutoff();
+    Widths widths;
+    widths.position_frac = 28, widths.guard = 10, widths.difference_frac = 24;
+    widths.velocity_bits = widths.sum_bits = widths.displacement_bits = 39;
+    fixed = quantise_without_law(rule, edge, widths);
+    Vec3 low = Vec3::Constant(INFINITY), high = -low;
+    for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    origin = low.array() - 1.25 * edge;
+    Cell count{};
+    for (int a = 0; a < 3; ++a) count[a] = static_cast<int32_t>(std::ceil((high[a] - origin[a]) / edge)) + 1;
+    std::vector<Cell> cells;
+    for (int32_t z = 0; z < count[2]; ++z)
+      for (int32_t y = 0; y < count[1]; ++y)
+        for (int32_t x = 0; x < count[0]; ++x) cells.push_back({x, y, z});
+    lattice = Lattice(std::move(cells), Cell{});
+    program = integer_program(*rounds_of(rule)->text(), fixed, capacity,
+                              starts_of(*rounds_of(rule)->text(), rule, scene.body, scene.periodic));
+  }
+  IntegerRun run() const { return {scene, scene.body, {program, fixed, lattice, origin, room}}; }
+
+  Scene scene;
+  FixedRule fixed;
+  Lattice lattice;
+  Vec3 origin;
+  IntegerProgram program;
+  int room;
+};
+
+std::string head(const std::string& run) {
+  return "density = \"7.8 g/cm^3\"\n"
+         "packing = { pitch = \"1 mm\" }\n"
+         "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[6, 3, 3] mm\" }\n" +
+         run;
+}
+
+const std::string kHeat = head("run = { dt = \"5 ms\", steps = 10 }\n") +
+                          "[rule]\nfile = \"texts/heat.toml\"\n"
+                          "start.T = \"300 K + 20 K/mm * x.x + 3 K/mm * x.y\"\n";
+
+TEST(IntegerProgram, HeatIsThatOfDoublesAndItsSumIsKeptToTheLastBit) {
+  const Made made(kHeat);
+  IntegerRun golden = made.run();
+  RoundsRun doubles(made.scene, made.scene.body, {}, 1e-3);
+  const auto field = [](Engine& run) { return std::get<RealFrame>(run.frame(false)).shown[0]; };
+  const std::vector<double> first = field(golden);
+  // 46 bits for 2,000 K: a sum of 200 values is exact in doubles.
+  const double sum = std::accumulate(first.begin(), first.end(), 0.0);
+  golden.advance(300, nullptr), doubles.advance(300, nullptr);
+  const std::vector<double> here = field(golden), there = field(doubles);
+  double moved = 0;
+  for (size_t i = 0; i < here.size(); ++i) {
+    // A step rounds each of 12 terms by 2^-36 K or so; differences keep 26 bits of 2,000 K: 3e-5 K, times
+    // g dt = 0.03, and their errors diffuse.
+    EXPECT_NEAR(here[i], there[i], 1e-4) << i;
+    moved = std::max(moved, std::abs(here[i] - first[i]));
+  }
+  EXPECT_GT(moved, 10);
+  EXPECT_EQ(std::accumulate(here.begin(), here.end(), 0.0), sum);
+}
+
+TEST(IntegerProgram, ItsFormatsAreProvenAndItsTermIsOdd) {
+  const Made made(kHeat);
+  const graph::FixedProgram& program = made.program.program;
+  EXPECT_EQ(graph::refusal_of(graph::certificate_of(program)).what, "");
+  for (const graph::Round& round : program.rounds) {
+    EXPECT_TRUE(graph::exactness_of(round.pair).doubles);
+    EXPECT_TRUE(graph::exactness_of(round.finish).doubles);
+    const std::vector<graph::Parity> parities = graph::parities_of(round.pair);
+    for (const graph::Sum& sum : round.sums)
+      for (const int term : sum.terms) EXPECT_TRUE(graph::is_odd(parities[static_cast<size_t>(term)]));
+  }
+}
+
+// Lennard-Jones as text, cut and shifted in force, with friction by relative velocity.
+const std::string kLiquid =
+    "units = \"reduced\"\nmass = 1\n"
+    "packing = { pitch = 1.12 }\n"
+    "geometry = { shape = \"box\", min = [0, 0, 0], max = [4, 4, 4] }\n"
+    "velocity = [ { region = { shape = \"half_space\", point = [0, 2.1, 0], normal = \"y\" }, uniform = "
+    "[0.4, "
+    "0.3, 0.1] } ]\n"
+    "run = { dt = 0.002, steps = 10 }\n"
+    "[rule]\nreach = 2.5\n"
+    "[rule.let]\npush = \"24 * (2 / r^12 - 1 / r^6) / r^2\"\nedge = \"24 * (2 / reach^12 - 1 / reach^6) / "
+    "reach\"\n"
+    "[[rule.round]]\n"
+    "sum.force = \"-(push - edge / r) * d + 0.3 * (1 - r / reach)^2 * dot(v_j - v_i, d) / r^2 * d\"\n"
+    "[rule.energy]\npair = \"4 * (1 / r^12 - 1 / r^6)\"\n";
+
+TEST(IntegerProgram, AForceMovesParticlesAsInDoublesAndKeepsMomentum) {
+  const Made made(kLiquid, 64);
+  IntegerRun golden = made.run();
+  RoundsRun doubles(made.scene, made.scene.body, {}, made.fixed.cell_edge);
+  const Momentum before = golden.momentum();
+  const auto at = [](Engine& run) { return std::get<RealFrame>(run.frame(false)).x; };
+  const std::vector<Vec3> first = at(golden);
+  golden.advance(200, nullptr), doubles.advance(200, nullptr);
+  EXPECT_EQ(golden.momentum().fixed, before.fixed);
+  const std::vector<Vec3> here = at(golden), there = at(doubles);
+  double moved = 0, off = 0;
+  for (size_t i = 0; i < here.size(); ++i) {
+    moved = std::max(moved, (here[i] - first[i]).norm());
+    off = std::max(off, (here[i] - there[i]).norm());
+  }
+  EXPECT_GT(moved, 0.1);
+  // Units of a difference are 1.5e-7: forces off by some 1e-5 of a unit of force, over 0.4 of time.
+  EXPECT_LT(off, 2e-5);
+  Asked asked;
+  asked.energies = true;
+  EXPECT_NEAR(golden.read(asked).energies.total(), doubles.read(asked).energies.total(), 0.01);
+}
+
+TEST(IntegerProgram, PairsNearerThanATableReachesAreAFault) {
+  std::string text = kLiquid;
+  text.replace(text.find("uniform = [0.4, 0.3, 0.1]"), 25, "uniform = [0, -90, 0]    ");
+  const Made made(text, 128);
+  IntegerRun golden = made.run();
+  EXPECT_THROW(golden.advance(200, nullptr), RunError);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    const Made made(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(IntegerProgram, WhatIntegersDoNotHoldIsRefused) {
+  const std::string run = "run = { dt = \"1 us\", steps = 10 }\n";
+  EXPECT_NE(
+      refusal(head(run) + "[rule]\nfile = \"texts/glass.toml\"\n").find("bonds that keep what they hold"),
+      std::string::npos);
+  const std::string own = head(run) + "[rule]\nreach = \"1.2 * pitch\"\nstill = true\nparticle.a.start = 1\n";
+  EXPECT_NE(refusal(own + "[[rule.round]]\nsum.b = \"a_j - a_i\"\nfinish.a = \"a + b\"\n")
+                .find("integers need the 'range' of the field 'a'"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(own + "particle.a.range = [-1, 1]\n[[rule.round]]\nsum.b = \"exp(a_j - a_i)\"\nfinish.a = "
+                    "\"a + b\"\n")
+          .find("of what may be negative"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal(own +
+              "particle.a.range = [0, 9]\n[[rule.round]]\nsum.b = \"a_j\"\nfinish.a = \"x.x / (1 mm) + b\"\n")
+          .find("knows no position"),
+      std::string::npos);
+}
+
+}  // namespace
+}  // namespace cuboct
