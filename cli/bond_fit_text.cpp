@@ -17,7 +17,6 @@ namespace {
 
 using bond_fit::BondStudy;
 using bond_fit::Compared;
-using bond_fit::Tried;
 
 constexpr std::array<const char*, 3> kColours = {"#1f5fa8", "#b03020", "#3d8a3d"};
 
@@ -63,7 +62,7 @@ void add_losses(Items& items, const BondFindings& found) {
 
 // Not at the target's edge, and by forces: another way to the same numbers.
 void add_rest(Items& items, const BondFindings& found) {
-  const Tried& tried = found.fit.tried[*found.fit.best];
+  const bond_fit::Tried& tried = found.fit.tried[*found.fit.best];
   TersoffForces forces({{found.study.element}, {best_term(found.study, found.fit)}});
   const CellConstants c = constants_of(forces, diamond_cell(tried.edge));
   const auto gpa = [](double value) { return value * kGpaOfEvPerA3; };
@@ -75,7 +74,7 @@ void add_rest(Items& items, const BondFindings& found) {
             fmt::format("{:.4g} with atoms nailed to the strain", gpa(c.clamped(3, 3))));
 }
 
-std::string verdict(const Tried& tried) {
+std::string verdict(const bond_fit::Tried& tried) {
   if (!tried.fault.empty()) return tried.fault;
   for (size_t b = 0; b < bond_fit::kBoundaries; ++b)
     if (const std::string& fault = tried.endurance.runs[b].fault; !fault.empty())
@@ -85,7 +84,7 @@ std::string verdict(const Tried& tried) {
 
 void add_trials(Items& items, const BondFindings& found) {
   std::vector<Items> list;
-  for (const Tried& tried : found.fit.tried) {
+  for (const bond_fit::Tried& tried : found.fit.tried) {
     Items one;
     const double loss = found.fit.starts[tried.start].loss;
     one.add("text", fmt::format("set {}, loss {:.3g}: {}", tried.start, loss, verdict(tried)));
@@ -147,7 +146,7 @@ void write_bond_tables(const BondFindings& found, const std::string& directory) 
   }
   write_text(directory + "/sets.tsv", sets);
   std::string trials = "set\tperiodic\ttemperature_K\tdrift_eV\tfault\n";
-  for (const Tried& tried : found.fit.tried)
+  for (const bond_fit::Tried& tried : found.fit.tried)
     for (size_t b = 0; b < bond_fit::kBoundaries; ++b) {
       const bond_fit::Endured& run = tried.endurance.runs[b];
       trials += fmt::format("{}\t{}\t{:.6g}\t{:.3g}\t{}\n", tried.start, bond_fit::kBoundaryNames[b],

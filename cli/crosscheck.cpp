@@ -74,9 +74,9 @@ void check_engines(const CrosscheckOptions& options) {
 }
 
 // The comparison of one run: it tells people as it goes, and keeps the same for scripts.
-class Comparison {
+class EngineComparison {
  public:
-  Comparison(const CrosscheckOptions& options, const Loaded& loaded, const std::vector<Trace>& traces)
+  EngineComparison(const CrosscheckOptions& options, const Loaded& loaded, const std::vector<Trace>& traces)
       : options_(options), loaded_(loaded), traces_(traces) {}
 
   // The exit code.
@@ -97,13 +97,13 @@ class Comparison {
   Items items_;
 };
 
-int Comparison::end(const char* verdict, int code) {
+int EngineComparison::end(const char* verdict, int code) {
   items_.add("verdict", verdict);
   tell_engines();
   return code;
 }
 
-bool Comparison::same_plan() {
+bool EngineComparison::same_plan() {
   const uint64_t hash = loaded_.setup.plan.hash;
   for (size_t a = 0; a < traces_.size(); ++a) {
     if (traces_[a].plan_hash == hash) continue;
@@ -116,7 +116,7 @@ bool Comparison::same_plan() {
   return true;
 }
 
-void Comparison::tell_mismatch(size_t a, size_t b, const Mismatch& mismatch) {
+void EngineComparison::tell_mismatch(size_t a, size_t b, const Mismatch& mismatch) {
   const Answer& answer = options_.answer;
   const std::string text = mismatch.text(name(a), name(b), loaded_.setup.plan.lattice);
   answer.say("mismatch: {}\n", text);
@@ -134,7 +134,7 @@ void Comparison::tell_mismatch(size_t a, size_t b, const Mismatch& mismatch) {
 }
 
 // What became of the faults that were injected.
-void Comparison::tell_faults(size_t i) {
+void EngineComparison::tell_faults(size_t i) {
   const auto counted = [&](const std::string& fault) -> std::optional<double> {
     for (const auto& [counter, value] : traces_[i].counters)
       if (counter == "faults_" + fault) return value;
@@ -148,7 +148,7 @@ void Comparison::tell_faults(size_t i) {
       *counted("in_acks"), *counted("detected"), *counted("healed"));
 }
 
-void Comparison::tell_engines() {
+void EngineComparison::tell_engines() {
   std::vector<Items> engines(traces_.size());
   for (size_t i = 0; i < traces_.size(); ++i) {
     engines[i].add("name", name(i));
@@ -160,7 +160,7 @@ void Comparison::tell_engines() {
   items_.add_list("engines", "engine", engines);
 }
 
-int Comparison::compare_all() {
+int EngineComparison::compare_all() {
   const Answer& answer = options_.answer;
   if (!same_plan()) return end("mismatch", 1);
   uint64_t phase_times = 0;
@@ -237,7 +237,7 @@ Crossed cross_once(const CrosscheckOptions& options, const std::string& leave) {
     if (!options.out.empty() && engine_row(options.engines[i]).here != Here::none)
       write_trace(options.out + "/" + options.engines[i] + ".h5", traces[i]);
   if (interrupted()) throw Failed("interrupted");
-  Comparison comparison(options, loaded, traces);
+  EngineComparison comparison(options, loaded, traces);
   const int code = comparison.compare_all();
   Crossed crossed{code, traces[0].reached.has_value(), comparison.items()};
   if (code == 0 && !leave.empty()) {

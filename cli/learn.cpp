@@ -26,7 +26,6 @@ namespace {
 
 using learn::KernelFit;
 using learn::Learned;
-using learn::Tried;
 
 struct LearnOptions {
   std::string study, out;
@@ -41,7 +40,7 @@ std::string spread(const Learned& found, double (*of)(const KernelFit&), const c
 }
 
 Items items_of(const learn::LearnStudy& study, const Learned& found) {
-  const Tried& best = found.tried[found.best];
+  const learn::Tried& best = found.tried[found.best];
   const learn::Kernel& kernel = best.fit.kernel;
   const auto waves = learn::Symbol(found.grid, best.horizon).long_waves(kernel);
   const char* tera = "samples drawn anew: {:.4f} +- {:.4f} TPa, {} times";
@@ -78,7 +77,7 @@ Items items_of(const learn::LearnStudy& study, const Learned& found) {
 void write_tables(const Learned& found, const std::string& directory) {
   std::string fits =
       "horizon\tdegree\ttraining\tvalidation\tconstraint\tlambda_TPa\tmu_TPa\talpha\tevaluations\n";
-  for (const Tried& t : found.tried)
+  for (const learn::Tried& t : found.tried)
     fits += fmt::format("{:g}\t{}\t{:.6g}\t{:.6g}\t{:.3g}\t{:.6g}\t{:.6g}\t{:.6g}\t{}\n", t.horizon, t.degree,
                         t.fit.training, t.fit.validation, t.fit.constraint, t.fit.kernel.lambda / 1e12,
                         t.fit.kernel.mu / 1e12, t.fit.kernel.alpha, t.fit.evaluations);

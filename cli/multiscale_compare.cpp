@@ -73,18 +73,18 @@ void add_cheapest(Items& items, const Comparison& compared, double limit) {
 }
 
 // Points of one mesh, one size of sample and one force, by rising cost.
-struct Curve {
+struct CostCurve {
   uint64_t elements = 0, atoms = 0;
   double force = 0;
   std::vector<const ComparedPoint*> points;
 };
 
-std::vector<Curve> curves_of(const Comparison& compared) {
+std::vector<CostCurve> curves_of(const Comparison& compared) {
   std::set<std::tuple<uint64_t, uint64_t, double>> kinds;
   for (const ComparedPoint& p : compared.points) kinds.insert({p.elements, p.atoms, p.effort.force});
-  std::vector<Curve> out;
+  std::vector<CostCurve> out;
   for (const auto& [elements, atoms, force] : kinds) {
-    Curve curve{elements, atoms, force, {}};
+    CostCurve curve{elements, atoms, force, {}};
     for (const ComparedPoint& p : compared.points)
       if (p.elements == elements && p.atoms == atoms && p.effort.force == force) curve.points.push_back(&p);
     std::ranges::sort(curve.points, {}, &ComparedPoint::atom_steps);
@@ -95,12 +95,12 @@ std::vector<Curve> curves_of(const Comparison& compared) {
 
 // Shape by mesh, colour by size of sample, hollow where the force is not the least.
 struct Marks {
-  explicit Marks(const std::vector<Curve>& curves) {
+  explicit Marks(const std::vector<CostCurve>& curves) {
     force = curves[0].force;
-    for (const Curve& curve : curves)
+    for (const CostCurve& curve : curves)
       elements.insert(curve.elements), atoms.insert(curve.atoms), force = std::min(force, curve.force);
   }
-  std::string of(const Curve& curve) const {
+  std::string of(const CostCurve& curve) const {
     static constexpr const char* kColours[] = {"#1f5fa8", "#d9822b", "#3a8f4d", "#8a4fa3"};
     static constexpr int kFilled[] = {7, 5, 9, 13, 11};
     const bool filled = curve.force == force;
@@ -119,7 +119,7 @@ struct Marks {
 };
 
 // A panel: errors of one figure against one cost.
-std::string panel(const std::vector<Curve>& curves, size_t figure, bool steps) {
+std::string panel(const std::vector<CostCurve>& curves, size_t figure, bool steps) {
   const Marks marks(curves);
   std::string out = fmt::format("set xlabel '{}'\nset ylabel 'error of {}'\nplot ",
                                 steps ? "atom-steps" : "seconds of a processor", kFigures[figure].title);
@@ -129,7 +129,7 @@ std::string panel(const std::vector<Curve>& curves, size_t figure, bool steps) {
   return out + "\n";
 }
 
-std::string data_of(const Comparison& compared, const std::vector<Curve>& curves) {
+std::string data_of(const Comparison& compared, const std::vector<CostCurve>& curves) {
   std::string data;
   for (size_t c = 0; c < curves.size(); ++c) {
     data += fmt::format("$curve{} << END\n", c);
@@ -199,7 +199,7 @@ void write_comparison(const Comparison& compared, const std::string& directory) 
 }
 
 void draw_comparison(const Comparison& compared, const std::string& directory) {
-  const std::vector<Curve> curves = curves_of(compared);
+  const std::vector<CostCurve> curves = curves_of(compared);
   std::vector<size_t> there;
   for (size_t k = 0; k < kFigures.size(); ++k)
     if (compared.finest.figures[k]) there.push_back(k);

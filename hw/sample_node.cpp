@@ -13,7 +13,7 @@ namespace cuboct {
 namespace {
 
 using Number = DatapathNumber;
-using Sample = DatapathSample<Number>;
+using NodeSample = DatapathSample<Number>;
 using Forces = DatapathForces<Number>;
 
 constexpr double kShake = 0.02;    // angstrom, of atoms whose forces are compared
@@ -112,9 +112,11 @@ Bonds bonds_of(const AtomicLattice& lattice, double cutoff) {
   return out;
 }
 
-Sample sample_of(const Bonds& bonds, const Mat3& cell, const std::vector<Vec3>& x) {
-  const auto triple = [](const Vec3& v) { return Sample::Triple{Number(v[0]), Number(v[1]), Number(v[2])}; };
-  Sample out;
+NodeSample sample_of(const Bonds& bonds, const Mat3& cell, const std::vector<Vec3>& x) {
+  const auto triple = [](const Vec3& v) {
+    return NodeSample::Triple{Number(v[0]), Number(v[1]), Number(v[2])};
+  };
+  NodeSample out;
   for (const Vec3& one : x) out.x.push_back(triple(one));
   out.first = bonds.first;
   for (size_t k = 0; k < bonds.other.size(); ++k)
@@ -184,7 +186,7 @@ class Counting {
   }
 
  private:
-  Sample placed(const Mat3& cell, double shake) const {
+  NodeSample placed(const Mat3& cell, double shake) const {
     std::vector<Vec3> x;
     for (const Vec3& place : material_.lattice.place) {
       const auto n = static_cast<double>(x.size());
@@ -195,7 +197,7 @@ class Counting {
 
   // Of the first atom alone: sums over all atoms are no part of the path.
   void count_depth(SampleNode& out) const {
-    Sample one = placed(material_.lattice.cell, kShake);
+    NodeSample one = placed(material_.lattice.cell, kShake);
     one.first = {0, bonds_.first[1]};
     Forces forces;
     TersoffDatapath<Number, NodeTables>(*tables_).evaluate(one, forces);
@@ -204,7 +206,7 @@ class Counting {
   }
 
   void compare_forces(SampleNode& out) {
-    Sample sample = placed(material_.lattice.cell, kShake);
+    NodeSample sample = placed(material_.lattice.cell, kShake);
     Forces forces;
     OperationCounts last = tally_.counts;
     TersoffDatapath<Number, NodeTables>(*tables_).evaluate(sample, forces, [&](DatapathStage stage) {
@@ -227,7 +229,7 @@ class Counting {
 
   // eV, the virial at rest; the sample begins as the lattice is strained.
   Mat3 rest(const Mat3& cell, uint32_t& evaluations) {
-    Sample sample = placed(cell, 0);
+    NodeSample sample = placed(cell, 0);
     Forces forces;
     const auto quotient = [&](const Number& way, const Number& bend) {
       ++tally_.counts.divisions;

@@ -98,19 +98,20 @@ class Judge {
   // A growth beyond what a stable mode swings to.
   std::optional<Trial> outgrown(const std::vector<double>& sizes) const {
     if (sizes.empty() || !(sizes.back() > most_ * start(sizes))) return std::nullopt;
-    return Trial{Verdict::unstable, fmt::format("motion that flips at each step grew {:.0f}-fold in {} steps",
-                                                sizes.back() / start(sizes), sizes.size() + 2)};
+    return Trial{TrialVerdict::unstable,
+                 fmt::format("motion that flips at each step grew {:.0f}-fold in {} steps",
+                             sizes.back() / start(sizes), sizes.size() + 2)};
   }
   Trial at_end(const std::vector<double>& sizes) const {
     const size_t quarter = sizes.size() / 4;
     const double second = *std::max_element(sizes.begin() + quarter, sizes.begin() + 2 * quarter);
     const double last = *std::max_element(sizes.end() - quarter, sizes.end());
     if (last > 3 * second && last > start(sizes))
-      return {Verdict::unstable,
+      return {TrialVerdict::unstable,
               fmt::format("motion that flips at each step grew {:.1f}-fold from the second "
                           "quarter of {} steps to the last",
                           last / second, sizes.size() + 2)};
-    return {Verdict::stable, ""};
+    return {TrialVerdict::stable, ""};
   }
 
  private:
@@ -134,7 +135,7 @@ Trial watch(Engine& run, const Body& start, const Judge& judge, uint64_t steps) 
     try {
       run.advance(1);
     } catch (const std::runtime_error& error) {
-      return {Verdict::unstable, error.what()};
+      return {TrialVerdict::unstable, error.what()};
     }
     if (const Body* body = run.saved_body())
       for (uint32_t i = 0; i < body->size(); ++i) {
@@ -181,7 +182,7 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
   try {
     plan = plan_of(scene, arch);
   } catch (const InputError& error) {
-    return {Verdict::refused, parts_of(error).message};
+    return {TrialVerdict::refused, parts_of(error).message};
   }
   const FixedRule& rule = plan->rule;
   const Judge judge(std::ldexp(seed / rule.cell_edge, rule.widths.velocity_frac()), resolution);
@@ -223,11 +224,11 @@ MeasuredLimit measured_limit(const Subject& subject, const Arch& arch, const Met
   const auto stable_at = [&](double dt) {
     const Trial trial = try_step(subject, arch, method, dt, resolution, out.steps);
     ++out.trials;
-    if (trial.verdict == Verdict::stable) {
+    if (trial.verdict == TrialVerdict::stable) {
       out.stable = dt;
       return true;
     }
-    out.unstable = dt, out.sign = trial.sign, out.refused = trial.verdict == Verdict::refused;
+    out.unstable = dt, out.sign = trial.sign, out.refused = trial.verdict == TrialVerdict::refused;
     return false;
   };
   // The bracket's ends move away from the guess until they differ.

@@ -45,13 +45,13 @@ struct Method {
 
 // The functions below throw Interrupted once model/base/interrupt.h was asked to stop.
 
-enum class Verdict : uint8_t {
+enum class TrialVerdict : uint8_t {
   stable,
   unstable,
   refused,  // the formats hold no such dt: the fixed rule cannot be made
 };
 struct Trial {
-  Verdict verdict = Verdict::stable;
+  TrialVerdict verdict = TrialVerdict::stable;
   std::string sign;  // what an unstable run showed: a growth, a fault's text; the refusal
 };
 // A run of `steps` steps from small random displacements and velocities (seeded). It looks at the part of the

@@ -59,7 +59,7 @@ StabilityMap map_of(const Frame& frame, int axis, int fineness, double unit, con
         if (std::isfinite(subject.limit.dt)) map.theory[i] = subject.limit.dt / unit;
         const uint64_t steps = steps_to_tell(subject.limit, kResolution);
         for (size_t k = 0; k < map.y.size() && subject.measurable; ++k) {
-          const Verdict verdict =
+          const TrialVerdict verdict =
               try_step(subject, column.arch, {frame.arithmetic}, map.y[k] * unit, kResolution, steps).verdict;
           map.cells[k * nx + i] = static_cast<StabilityMap::Cell>(verdict);
         }

@@ -190,11 +190,11 @@ TEST(Stability, VerdictsFarFromTheLimit) {
   for (const AskedPoint& asked : methods()) {
     for (const double part : {0.02, 0.1, 0.5, 0.98})
       EXPECT_EQ(try_step(subject, Arch{}, asked.method, part * subject.limit.dt, 0.01, steps).verdict,
-                Verdict::stable)
+                TrialVerdict::stable)
           << asked.name << " at " << part;
     for (const double part : {1.02, 1.1, 1.5, 3.0, 10.0}) {
       const Trial trial = try_step(subject, Arch{}, asked.method, part * subject.limit.dt, 0.01, steps);
-      EXPECT_NE(trial.verdict, Verdict::stable) << asked.name << " at " << part;
+      EXPECT_NE(trial.verdict, TrialVerdict::stable) << asked.name << " at " << part;
       EXPECT_FALSE(trial.sign.empty());
     }
   }
