@@ -32,8 +32,8 @@ bool has(const std::string& line, const std::string& word) { return line.find(wo
 
 // Whether the ends of a line's interval follow from others.
 bool is_proven(const std::string& line) {
-  return has(line, " in ") && !has(line, "format") && !has(line, " input ") && !has(line, " clamp ") &&
-         !has(line, " within ");
+  return has(line, " in ") && !has(line, "format") && (!has(line, " input ") || has(line, " input sum ")) &&
+         !has(line, " clamp ") && !has(line, " within ");
 }
 
 // The line with one end moved inwards; empty where it has but one value.

@@ -17,7 +17,7 @@ using graph::FixedProgram;
 using graph::Source;
 using test::Dice;
 
-constexpr int kPosition = 10, kGuard = 2, kCapacity = 4;
+constexpr int kPosition = 10, kGuard = 2, kRingCapacity = 4;
 constexpr int64_t kReach2 = 700 * 700;
 
 int distance2(Builder& b, const FixedProgram& program) {
@@ -56,7 +56,7 @@ graph::Round heated(FixedProgram& program, int shift) {
 FixedProgram heat(int shift = 9) {
   FixedProgram program;
   program.name = "heat";
-  program.partners = 27 * kCapacity - 1;
+  program.partners = 27 * kRingCapacity - 1;
   program.position_frac = kPosition, program.guard = kGuard;
   program.velocity = {-1024, 1023};
   program.fields = {{"n", 1, {0, program.partners}, 0}, {"T", 1, {-(1 << 23), (1 << 23) - 1}, 8}};
@@ -122,7 +122,7 @@ int64_t total(const State& state) {
 TEST(GoldenProgram, OfTwoRoundsIsWhatPairsByHandMake) {
   const Lattice lattice = ring();
   const State start = warm(1);
-  Golden golden(heat(), lattice, kCapacity, start);
+  Golden golden(heat(), lattice, kRingCapacity, start);
   std::vector<uint32_t> cells;
   for (int step = 0; step < 30; ++step) {
     const State before = golden.state();
@@ -137,9 +137,9 @@ TEST(GoldenProgram, OfTwoRoundsIsWhatPairsByHandMake) {
 
 TEST(GoldenProgram, GoesOnFromItsFields) {
   const Lattice lattice = ring();
-  Golden whole(heat(), lattice, kCapacity, warm(2));
+  Golden whole(heat(), lattice, kRingCapacity, warm(2));
   for (int step = 0; step < 4; ++step) whole.step();
-  Golden rest(heat(), lattice, kCapacity, whole.state());
+  Golden rest(heat(), lattice, kRingCapacity, whole.state());
   whole.step(), rest.step();
   EXPECT_EQ(whole.state(), rest.state());
   State other = whole.state();
@@ -157,7 +157,7 @@ TEST(GoldenProgram, ReportsTheFaultOfAFinish) {
   for (size_t k = 1; k < start.fields.size(); k += 2)
     start.fields[k] = (k % 4 == 1 ? 1 : -1) * ((1 << 23) - 1);
   try {
-    Golden(heat(1), lattice, kCapacity, start).step();
+    Golden(heat(1), lattice, kRingCapacity, start).step();
     FAIL();
   } catch (const RunError& e) {
     EXPECT_EQ(e.fault, Fault::sum);
