@@ -16,12 +16,18 @@ Fault along(int axis, Fault along_x) { return static_cast<Fault>(static_cast<int
 static_assert(static_cast<int>(Fault::left_z) == static_cast<int>(Fault::left_x) + 4);
 static_assert(static_cast<int>(Fault::full_z) == static_cast<int>(Fault::full_x) + 4);
 
+// Golden takes any state, also one that moves along z where its scene is flat.
+FixedRule with_three_axes(FixedRule rule) {
+  rule.axes = 3;
+  return rule;
+}
+
 auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
 
 }  // namespace
 
 Golden::Golden(const FixedRule& rule, const Lattice& lattice, int capacity, const State& initial)
-    : Golden(pair_program(rule, capacity), lattice, capacity, initial) {}
+    : Golden(pair_program(with_three_axes(rule), capacity), lattice, capacity, initial) {}
 
 Golden::Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial)
     : program_(std::make_shared<const graph::FixedProgram>(std::move(program))),
