@@ -19,7 +19,7 @@ struct Ends {
   bool operator==(const Ends&) const = default;
 };
 
-Ends hull(std::initializer_list<Big> v) { return {std::min(v), std::max(v)}; }
+Ends ends_of(std::initializer_list<Big> v) { return {std::min(v), std::max(v)}; }
 
 Big power(Big n) { return Big{1} << static_cast<int>(n); }
 
@@ -196,7 +196,7 @@ class Checker {
   // A product of nodes p and q; squares are not negative.
   Ends product(size_t p, size_t q) const {
     const Ends a = nodes_.at(p), b = nodes_.at(q);
-    Ends all = hull({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
+    Ends all = ends_of({a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high});
     if (p == q) all.low = a.low > 0 || a.high < 0 ? std::min(a.low * a.low, a.high * a.high) : 0;
     return all;
   }
@@ -256,7 +256,7 @@ class Checker {
     if (op == "align") return aligned(a, shift, width);
     if (op == "shift") {
       const auto at = [](Big v, Big by) { return by >= 0 ? v * power(by) : nearest(v, -by); };
-      return hull({at(a.low, b.low), at(a.low, b.high), at(a.high, b.low), at(a.high, b.high)});
+      return ends_of({at(a.low, b.low), at(a.low, b.high), at(a.high, b.low), at(a.high, b.high)});
     }
     const auto c = [&] { return nodes_.at(in.at(2)); };
     if (op == "mac") {
