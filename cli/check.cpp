@@ -10,6 +10,7 @@
 #include "cli/answer.h"
 #include "cli/estimate.h"
 #include "cli/load_any.h"
+#include "cli/rule_integers.h"
 #include "cli/stages.h"
 #include "cli/summary.h"
 #include "hw/cycles.h"
@@ -229,6 +230,7 @@ Items physics(const Loaded& loaded) {
   if (scene.began) items.add("begins at", start_text(scene, &plan.rule, plan.origin));
   const Estimate cost = estimate(scene, plan, run_size(scene));
   add_rounds(items, scene);
+  add_integers(items, scene, plan.arch);
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
   if (cost.reading > 0) items.add("probes", readings_text(scene, cost));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),

@@ -15,6 +15,7 @@ constexpr int kBinBits = 6;  // 64 parabolas an octave: for x^-n off by n^3/2^25
 constexpr int kMostIndex = 11;
 constexpr int kCoefficient = 25;
 constexpr int kFraction = 17;
+constexpr double kFar = 0.3;
 
 struct Parabola {
   std::array<double, 3> c{};
@@ -50,7 +51,6 @@ FittedTable fit_table(const TableRoom& room, const std::function<double(double)>
     const double y0 = at(begin), ym = at(begin + width / 2), y1 = at(begin + width);
     bins.push_back({{y0, -3 * y0 + 4 * ym - y1, 2 * y0 - 4 * ym + 2 * y1}});
     for (const double c : bins.back().c) largest = std::max(largest, std::abs(c));
-    out.largest = std::max(out.largest, std::abs(y0));
   }
   int exponent = 0;
   if (largest > 0) std::frexp(largest, &exponent);
@@ -66,8 +66,10 @@ FittedTable fit_table(const TableRoom& room, const std::function<double(double)>
     const auto argument = static_cast<uint64_t>(
         std::ldexp(1.0 + (static_cast<double>(k % (4u << kBinBits)) + 0.5) / (4 << kBinBits), octave));
     if (argument > last) break;
+    if (static_cast<double>(argument) < kFar * static_cast<double>(last)) continue;
     const double value = std::ldexp(static_cast<double>(table.at(argument)), -table.value_frac);
     out.worst = std::max(out.worst, std::abs(value - at(static_cast<double>(argument))));
+    out.largest = std::max(out.largest, std::abs(value));
   }
   return out;
 }

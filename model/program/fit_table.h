@@ -18,8 +18,10 @@ struct TableRoom {
 
 struct FittedTable {
   FixedTable table;  // value_frac: of values over the unit
-  double worst = 0;  // largest error at four points a bin, over the unit
-  double largest = 0;
+  // Over the unit, at four points a bin of arguments beyond 0.3 of the last: where a table of r^2 is not
+  // steep.
+  double worst = 0;    // error
+  double largest = 0;  // value
 };
 
 // With the largest value_frac whose coefficients stay below 2^25.

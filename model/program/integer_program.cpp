@@ -110,7 +110,6 @@ class Lowering {
     return *made_[id];
   }
   Integers& integers() { return integers_; }
-  const std::vector<IntegerProgram::TableError>& errors() const { return errors_; }
 
  private:
   bool of_r(NodeId id) const { return radial_ != nullptr && radial_->of_r(id); }
@@ -135,9 +134,7 @@ class Lowering {
     const RealNode& node = graph_.at(id);
     if (node.op == RealOp::constant) return Scaled::of(node.value);
     if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
-    if (of_r(id) && !is_truth(node.op))
-      return table(
-          fmt::format("node {}", id), [&](double r2) { return radial_->at(id, r2); }, unit);
+    if (of_r(id) && !is_truth(node.op)) return table([&](double r2) { return radial_->at(id, r2); }, unit);
     const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
     switch (node.op) {
       case RealOp::input:
@@ -191,9 +188,7 @@ class Lowering {
     if (of_r(b)) {
       const Scaled x = value(a);
       const double left = x.constant() ? (x.number != 0 ? unit / std::abs(x.number) : 0) : unit / x.unit;
-      return integers_.multiply(x,
-                                table(
-                                    "a reciprocal", [&](double r2) { return 1 / radial_->at(b, r2); }, left));
+      return integers_.multiply(x, table([&](double r2) { return 1 / radial_->at(b, r2); }, left));
     }
     const Scaled x = value(a, 0), y = value(b);
     if (!y.constant()) {
@@ -218,7 +213,7 @@ class Lowering {
   }
 
   // From where the function is not too steep. Nearer pairs are a fault, not a wrong force.
-  Scaled table(const std::string&, const std::function<double(double)>& f, double unit) {
+  Scaled table(const std::function<double(double)>& f, double unit) {
     double usual = 0;
     constexpr int kSamples = 64;
     const auto at = [&](double part) { return f(part * part * reach2_); };
@@ -253,7 +248,6 @@ class Lowering {
   const Radial* radial_ = nullptr;
   Scaled r2_;
   double reach2_ = 0;
-  std::vector<IntegerProgram::TableError> errors_;
 };
 
 class Program {
@@ -371,6 +365,7 @@ class Program {
     const std::vector<SumScale> scales = add_terms(k, pair, b, round);
     round.when = b.when();
     round.pair = b.take();
+    out_.tables.push_back(pair.integers().fits());
     add_finish(k, scales, round);
     out_.program.rounds.push_back(std::move(round));
   }
@@ -455,9 +450,17 @@ class Program {
   }
   double kick_unit() const { return base_.mass * base_.cell_edge / (base_.dt * base_.dt); }
 
+  static std::vector<std::string> names_of_sums(const RuleRound& round) {
+    std::vector<std::string> names;
+    for (const RuleField& sum : round.sums)
+      for (int n = 0; n < sum.numbers; ++n)
+        names.push_back(sum.numbers == 1 ? sum.name : fmt::format("{}.{}", sum.name, "xyz"[n]));
+    return names;
+  }
   std::vector<SumScale> add_terms(size_t k, Lowering& pair, Builder& b, graph::Round& round) {
     const ProgramRound& from = rule_.rounds[k];
     const int spare = static_cast<int>(std::ceil(std::log2(out_.program.partners + 1)));
+    const std::vector<std::string> names = names_of_sums(rule_.declaration.rounds[k]);
     std::vector<SumScale> scales;
     for (size_t n = 0; n < from.terms.size(); ++n) {
       const Scaled when = pair.value(from.when[n]);
@@ -478,7 +481,7 @@ class Program {
         term = pair.integers().narrow(term, kSumBits - spare);
       }
       scales.push_back({term, static_cast<int>(round.sums.size()), 0});
-      round.sums.push_back({fmt::format("sum {}", n), {term.node}});
+      round.sums.push_back({names[n], {term.node}});
     }
     return scales;
   }
@@ -497,6 +500,8 @@ class Program {
       write_field(finish, b, write, round);
     }
     if (k + 1 == rule_.rounds.size()) move(finish, b, from);
+    const auto& fits = finish.integers().fits();
+    out_.tables.back().insert(out_.tables.back().end(), fits.begin(), fits.end());
     round.finish = b.take();
   }
   Scaled finish_input(Builder& b, const RealInput& input, const std::function<Scaled(uint32_t)>& sum) {

@@ -11,6 +11,7 @@
 
 #include "model/contract/fixed_rule.h"
 #include "model/graph/program.h"
+#include "model/program/integers.h"
 #include "model/program/rule_program.h"
 
 namespace cuboct {
@@ -26,11 +27,7 @@ struct IntegerProgram {
   std::vector<FieldScale> scales;  // of program.fields
   // The field of RuleProgram::particle that each is.
   std::vector<size_t> field;
-  struct TableError {
-    std::string of;
-    double worst = 0, largest = 0;  // in the unit of the table
-  };
-  std::vector<TableError> tables;
+  std::vector<std::vector<Integers::Fit>> tables;  // by round, of its pair terms and its finish
 };
 
 // `base`: formats, cell edge, step, masses and constraints of the scene. `start`: by number of the rule's

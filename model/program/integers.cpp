@@ -184,6 +184,7 @@ Scaled Integers::function(const Scaled& a, const std::function<double(double)>& 
   const FittedTable fitted =
       fit_table({.bits = bits_of(x), .step = step, .from = from, .to = to, .unit = values.unit}, f);
   const int table = b_.table(fitted.table);
+  fits_.push_back({fitted.largest > 0 ? fitted.worst / fitted.largest : 0, fitted.table.c0.size()});
   return {b_.lookup(table, x.node), 0, fitted.table.value_frac, values.unit};
 }
 

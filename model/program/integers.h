@@ -6,6 +6,8 @@
 #pragma once
 
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "model/graph/builder.h"
 
@@ -54,6 +56,13 @@ class Integers {
   int node_in(const Scaled& a, double unit, int frac);
   int node_of(const Scaled& a);  // of a constant too
 
+  // Of each table that was made: its largest error over its largest value, and how many entries it has.
+  struct Fit {
+    double error = 0;
+    size_t entries = 0;
+  };
+  const std::vector<Fit>& fits() const { return fits_; }
+
  private:
   int64_t size_of(int node) const;
   int bits_of(const Scaled& a) const;
@@ -61,6 +70,7 @@ class Integers {
   std::pair<Scaled, Scaled> alike(const Scaled& a, const Scaled& b);
 
   graph::Builder& b_;
+  std::vector<Fit> fits_;
 };
 
 }  // namespace cuboct
