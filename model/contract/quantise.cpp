@@ -494,7 +494,7 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
 }
 
 FixedRule quantise_without_law(const Rule& rule, double cell_edge, const Widths& widths) {
-  check_widths(widths, {});
+  check_widths(widths, {.index_bits = kLeastIndex});
   FixedRule fixed = framed(rule, cell_edge, widths);
   add_types(rule, fixed);
   return fixed;

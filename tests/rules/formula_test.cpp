@@ -13,14 +13,14 @@ namespace cuboct {
 namespace {
 
 // With d = (3, 4, 12) m, T_i = 300 K, T_j = 290 K, k = 2 N/m.
-struct Made {
+struct Compiled {
   RealGraph graph;
   Value value;
   std::vector<double> numbers;
 };
 
-Made made(const std::string& text, const std::map<std::string, Formula>& lets = {}) {
-  Made out;
+Compiled compiled(const std::string& text, const std::map<std::string, Formula>& lets = {}) {
+  Compiled out;
   Scope scope(out.graph, true);
   scope.define_vector("d", RealSource::difference, 0, quantity::length.dimension);
   scope.define_number("T_i", RealSource::own_field, 0, quantity::temperature.dimension);
@@ -44,48 +44,48 @@ Made made(const std::string& text, const std::map<std::string, Formula>& lets = 
   return out;
 }
 
-double number(const std::string& text) {
-  const Made of = made(text);
+double number_of(const std::string& text) {
+  const Compiled of = compiled(text);
   EXPECT_EQ(of.numbers.size(), 1u) << text;
   return of.numbers[0];
 }
 
 TEST(Formula, MeansWhatItSays) {
-  EXPECT_EQ(number("1 + 2 * 3"), 7);
-  EXPECT_EQ(number("2 - 3 - 4"), -5);
-  EXPECT_EQ(number("8 / 4 / 2"), 1);
-  EXPECT_EQ(number("-2 ^ 2"), -4);
-  EXPECT_EQ(number("2 ^ -1"), 0.5);
-  EXPECT_EQ(number("2 ^ 3 ^ 2"), 512);
-  EXPECT_EQ(number("norm(d)"), 13);
-  EXPECT_EQ(number("dot(d, d) / (1 m^2)"), 169);
-  EXPECT_EQ(number("d.y"), 4);
-  EXPECT_EQ(number("(T_j - T_i) / 1 K"), -10);
-  EXPECT_EQ(number("5 mm"), 0.005);
-  EXPECT_EQ(number("3 kN/m^2"), 3000);
-  EXPECT_EQ(number("select(T_i > T_j and not T_i == T_j, 1, 2)"), 1);
-  EXPECT_EQ(number("min(3, max(1, 2)) + abs(-4)"), 6);
-  EXPECT_EQ(number("sqrt(dot(d, d))"), 13);
-  EXPECT_DOUBLE_EQ(number("log(exp(1.5)) + sin(0) + cos(0)"), 2.5);
-  EXPECT_EQ(made("k * d").numbers, (std::vector<double>{6, 8, 24}));
-  EXPECT_EQ(made("[1, 0, 2] - [0, 1, 0]").numbers, (std::vector<double>{1, -1, 2}));
-  EXPECT_EQ(made("k * d").value.dimension, quantity::force.dimension);
-  EXPECT_EQ(made("sqrt(k / (2 kg))").value.dimension, (Dimension{{0, 0, -1, 0}}));
+  EXPECT_EQ(number_of("1 + 2 * 3"), 7);
+  EXPECT_EQ(number_of("2 - 3 - 4"), -5);
+  EXPECT_EQ(number_of("8 / 4 / 2"), 1);
+  EXPECT_EQ(number_of("-2 ^ 2"), -4);
+  EXPECT_EQ(number_of("2 ^ -1"), 0.5);
+  EXPECT_EQ(number_of("2 ^ 3 ^ 2"), 512);
+  EXPECT_EQ(number_of("norm(d)"), 13);
+  EXPECT_EQ(number_of("dot(d, d) / (1 m^2)"), 169);
+  EXPECT_EQ(number_of("d.y"), 4);
+  EXPECT_EQ(number_of("(T_j - T_i) / 1 K"), -10);
+  EXPECT_EQ(number_of("5 mm"), 0.005);
+  EXPECT_EQ(number_of("3 kN/m^2"), 3000);
+  EXPECT_EQ(number_of("select(T_i > T_j and not T_i == T_j, 1, 2)"), 1);
+  EXPECT_EQ(number_of("min(3, max(1, 2)) + abs(-4)"), 6);
+  EXPECT_EQ(number_of("sqrt(dot(d, d))"), 13);
+  EXPECT_DOUBLE_EQ(number_of("log(exp(1.5)) + sin(0) + cos(0)"), 2.5);
+  EXPECT_EQ(compiled("k * d").numbers, (std::vector<double>{6, 8, 24}));
+  EXPECT_EQ(compiled("[1, 0, 2] - [0, 1, 0]").numbers, (std::vector<double>{1, -1, 2}));
+  EXPECT_EQ(compiled("k * d").value.dimension, quantity::force.dimension);
+  EXPECT_EQ(compiled("sqrt(k / (2 kg))").value.dimension, (Dimension{{0, 0, -1, 0}}));
 }
 
 TEST(Formula, IsOneGraphWithoutRepetition) {
-  const Made once = made("norm(d)"), twice = made("norm(d) * norm(d) + norm(d)^2");
+  const Compiled once = compiled("norm(d)"), twice = compiled("norm(d) * norm(d) + norm(d)^2");
   EXPECT_EQ(twice.graph.nodes().size(), once.graph.nodes().size() + 2 + 1);  // product, sum; the exponent 2
 }
 
-struct Wrong {
+struct WrongFormula {
   const char* text;
   size_t at;
   const char* message;
 };
 
 TEST(Formula, SaysWhereItMeansNothing) {
-  const Wrong all[] = {
+  const WrongFormula all[] = {
       {"k * ", 4, "the formula ends too early"},
       {"k * (d.x", 8, "')' is missing here"},
       {"1 < 2 < 3", 6, "comparisons do not follow one another"},
@@ -110,8 +110,8 @@ TEST(Formula, SaysWhereItMeansNothing) {
   };
   const std::map<std::string, Formula> lets{
       {"loop", {"1 + loop", parse_expression("1 + loop"), [](const FormulaError& e) { throw e; }}}};
-  for (const Wrong& wrong : all) try {
-      made(wrong.text, lets);
+  for (const WrongFormula& wrong : all) try {
+      compiled(wrong.text, lets);
       ADD_FAILURE() << wrong.text;
     } catch (const FormulaError& error) {
       EXPECT_EQ(error.message, wrong.message) << wrong.text;

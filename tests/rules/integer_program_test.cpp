@@ -18,12 +18,12 @@
 namespace cuboct {
 namespace {
 
-const std::string kHere = CUBOCT_SOURCE_DIR "/scenes/rules/";
+const std::string kIntegerTexts = CUBOCT_SOURCE_DIR "/scenes/rules/";
 
 // A scene's rule in integers, with cells of its reach.
-struct Made {
-  explicit Made(const std::string& text, int capacity = 16)
-      : scene(parse_scene(text, kHere + "test.toml")), room(capacity) {
+struct InIntegers {
+  explicit InIntegers(const std::string& text, int capacity = 16)
+      : scene(parse_scene(text, kIntegerTexts + "test.toml")), room(capacity) {
     const Rule& rule = scene.rule;
     const double edge = rule.cutoff();
     Widths widths;
@@ -53,19 +53,19 @@ struct Made {
   int room;
 };
 
-std::string head(const std::string& run) {
+std::string small_block(const std::string& run) {
   return "density = \"7.8 g/cm^3\"\n"
          "packing = { pitch = \"1 mm\" }\n"
          "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[6, 3, 3] mm\" }\n" +
          run;
 }
 
-const std::string kHeat = head("run = { dt = \"5 ms\", steps = 10 }\n") +
-                          "[rule]\nfile = \"texts/heat.toml\"\n"
-                          "start.T = \"300 K + 20 K/mm * x.x + 3 K/mm * x.y\"\n";
+const std::string kHeatText = small_block("run = { dt = \"5 ms\", steps = 10 }\n") +
+                              "[rule]\nfile = \"texts/heat.toml\"\n"
+                              "start.T = \"300 K + 20 K/mm * x.x + 3 K/mm * x.y\"\n";
 
 TEST(IntegerProgram, HeatIsThatOfDoublesAndItsSumIsKeptToTheLastBit) {
-  const Made made(kHeat);
+  const InIntegers made(kHeatText);
   IntegerRun golden = made.run();
   RoundsRun doubles(made.scene, made.scene.body, {}, 1e-3);
   const auto field = [](Engine& run) { return std::get<RealFrame>(run.frame(false)).shown[0]; };
@@ -86,7 +86,7 @@ TEST(IntegerProgram, HeatIsThatOfDoublesAndItsSumIsKeptToTheLastBit) {
 }
 
 TEST(IntegerProgram, ItsFormatsAreProvenAndItsTermIsOdd) {
-  const Made made(kHeat);
+  const InIntegers made(kHeatText);
   const graph::FixedProgram& program = made.program.program;
   EXPECT_EQ(graph::refusal_of(graph::certificate_of(program)).what, "");
   for (const graph::Round& round : program.rounds) {
@@ -99,7 +99,7 @@ TEST(IntegerProgram, ItsFormatsAreProvenAndItsTermIsOdd) {
 }
 
 // Lennard-Jones as text, cut and shifted in force, with friction by relative velocity.
-const std::string kLiquid =
+const std::string kLiquidText =
     "units = \"reduced\"\nmass = 1\n"
     "packing = { pitch = 1.12 }\n"
     "geometry = { shape = \"box\", min = [0, 0, 0], max = [4, 4, 4] }\n"
@@ -115,7 +115,7 @@ const std::string kLiquid =
     "[rule.energy]\npair = \"4 * (1 / r^12 - 1 / r^6)\"\n";
 
 TEST(IntegerProgram, AForceMovesParticlesAsInDoublesAndKeepsMomentum) {
-  const Made made(kLiquid, 64);
+  const InIntegers made(kLiquidText, 64);
   IntegerRun golden = made.run();
   RoundsRun doubles(made.scene, made.scene.body, {}, made.fixed.cell_edge);
   const Momentum before = golden.momentum();
@@ -138,16 +138,16 @@ TEST(IntegerProgram, AForceMovesParticlesAsInDoublesAndKeepsMomentum) {
 }
 
 TEST(IntegerProgram, PairsNearerThanATableReachesAreAFault) {
-  std::string text = kLiquid;
+  std::string text = kLiquidText;
   text.replace(text.find("uniform = [0.4, 0.3, 0.1]"), 25, "uniform = [0, -90, 0]    ");
-  const Made made(text, 128);
+  const InIntegers made(text, 128);
   IntegerRun golden = made.run();
   EXPECT_THROW(golden.advance(200, nullptr), RunError);
 }
 
-std::string refusal(const std::string& text) {
+std::string integer_refusal(const std::string& text) {
   try {
-    const Made made(text);
+    const InIntegers made(text);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -156,21 +156,23 @@ std::string refusal(const std::string& text) {
 
 TEST(IntegerProgram, WhatIntegersDoNotHoldIsRefused) {
   const std::string run = "run = { dt = \"1 us\", steps = 10 }\n";
-  EXPECT_NE(
-      refusal(head(run) + "[rule]\nfile = \"texts/glass.toml\"\n").find("bonds that keep what they hold"),
-      std::string::npos);
-  const std::string own = head(run) + "[rule]\nreach = \"1.2 * pitch\"\nstill = true\nparticle.a.start = 1\n";
-  EXPECT_NE(refusal(own + "[[rule.round]]\nsum.b = \"a_j - a_i\"\nfinish.a = \"a + b\"\n")
+  EXPECT_NE(integer_refusal(small_block(run) + "[rule]\nfile = \"texts/glass.toml\"\n")
+                .find("bonds that keep what they hold"),
+            std::string::npos);
+  const std::string own =
+      small_block(run) + "[rule]\nreach = \"1.2 * pitch\"\nstill = true\nparticle.a.start = 1\n";
+  EXPECT_NE(integer_refusal(own + "[[rule.round]]\nsum.b = \"a_j - a_i\"\nfinish.a = \"a + b\"\n")
                 .find("integers need the 'range' of the field 'a'"),
             std::string::npos);
+  EXPECT_NE(integer_refusal(
+                own + "particle.a.range = [-1, 1]\n[[rule.round]]\nsum.b = \"exp(a_j - a_i)\"\nfinish.a = "
+                      "\"a + b\"\n")
+                .find("of what may be negative"),
+            std::string::npos);
   EXPECT_NE(
-      refusal(own + "particle.a.range = [-1, 1]\n[[rule.round]]\nsum.b = \"exp(a_j - a_i)\"\nfinish.a = "
-                    "\"a + b\"\n")
-          .find("of what may be negative"),
-      std::string::npos);
-  EXPECT_NE(
-      refusal(own +
-              "particle.a.range = [0, 9]\n[[rule.round]]\nsum.b = \"a_j\"\nfinish.a = \"x.x / (1 mm) + b\"\n")
+      integer_refusal(
+          own +
+          "particle.a.range = [0, 9]\n[[rule.round]]\nsum.b = \"a_j\"\nfinish.a = \"x.x / (1 mm) + b\"\n")
           .find("knows no position"),
       std::string::npos);
 }

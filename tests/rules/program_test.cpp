@@ -16,16 +16,16 @@
 namespace cuboct {
 namespace {
 
-const std::string kHere = CUBOCT_SOURCE_DIR "/scenes/rules/";
+const std::string kTexts = CUBOCT_SOURCE_DIR "/scenes/rules/";
 
-Scene scene_of(const std::string& text) { return parse_scene(text, kHere + "test.toml"); }
+Scene scene_of_text(const std::string& text) { return parse_scene(text, kTexts + "test.toml"); }
 
-std::vector<double> field(RoundsRun& run, size_t index = 0) {
+std::vector<double> field_in(RoundsRun& run, size_t index = 0) {
   return std::get<RealFrame>(run.frame(false)).shown[index];
 }
 
 // Everything but [rule], which is last.
-std::string bar(const std::string& rule) {
+std::string heat_bar(const std::string& rule) {
   return "density = \"7.8 g/cm^3\"\n"
          "packing = { pitch = \"1 mm\" }\n"
          "box = { periodic = \"yz\", cells = [11, 3, 3] }\n"
@@ -43,13 +43,13 @@ const std::string kWave =
 // k/(2 c density pitch^2) the cosine of wave number q = pi/n over n layers, whose slope is 0 at the free
 // ends, shrinks in a step by 1 - 8 g dt (1 - cos q).
 TEST(Program, HeatOfABarDecaysAsTheClosedForm) {
-  const Scene scene = scene_of(bar(kWave));
+  const Scene scene = scene_of_text(heat_bar(kWave));
   RoundsRun run(scene, scene.body, {}, 1e-3);
-  const std::vector<double> first = field(run);
+  const std::vector<double> first = field_in(run);
   ASSERT_NEAR(*std::ranges::max_element(first), 350 - 50 * (1 - std::cos(std::numbers::pi / 42)), 1e-9);
   constexpr int kSteps = 200;
   run.advance(kSteps, nullptr);
-  const std::vector<double> last = field(run);
+  const std::vector<double> last = field_in(run);
   const double g = 50 / (2 * 500 * 7800 * 1e-6), decay = 8 * g * 5e-3 * (1 - std::cos(std::numbers::pi / 21));
   double sum = 0;
   for (size_t i = 0; i < last.size(); ++i) {
@@ -62,23 +62,23 @@ TEST(Program, HeatOfABarDecaysAsTheClosedForm) {
 }
 
 TEST(Program, NoBitDependsOnThreadsOrOnAPause) {
-  const Scene scene = scene_of(bar(kWave));
+  const Scene scene = scene_of_text(heat_bar(kWave));
   const auto after = [&](int threads, uint64_t pause) {
     RoundsRun first(scene, scene.body, RealOptions{.threads = threads}, 1e-3);
     first.advance(pause, nullptr);
     const Body half = *first.saved_body();
     RoundsRun rest(scene, half, RealOptions{.threads = threads}, 1e-3, pause);
     rest.advance(40 - pause, nullptr);
-    return field(rest);
+    return field_in(rest);
   };
   const std::vector<double> whole = after(1, 0);
   EXPECT_EQ(whole, after(3, 0));
   EXPECT_EQ(whole, after(1, 17));
   RoundsRun start(scene, scene.body, {}, 1e-3);
-  EXPECT_NE(whole, field(start));
+  EXPECT_NE(whole, field_in(start));
 }
 
-std::string block(const std::string& rule) {
+std::string struck_block(const std::string& rule) {
   return "density = \"2440 kg/m^3\"\n"
          "packing = { pitch = \"1 mm\" }\n"
          "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[8, 8, 4] mm\" }\n"
@@ -90,10 +90,10 @@ std::string block(const std::string& rule) {
 
 // The rule of scenes/rules/texts/glass.toml is that of [rule] kind = "lps", written by hand in C++.
 TEST(Program, GlassIsThePeridynamicSolid) {
-  const Scene text = scene_of(block("[rule]\nfile = \"texts/glass.toml\"\n"));
-  const Scene own =
-      scene_of(block("[rule]\nkind = \"lps\"\nyoungs_modulus = \"70 GPa\"\npoissons_ratio = 0.22\n"
-                     "horizon = \"1.51 mm\"\ncritical_stretch = 0.002\n"));
+  const Scene text = scene_of_text(struck_block("[rule]\nfile = \"texts/glass.toml\"\n"));
+  const Scene own = scene_of_text(
+      struck_block("[rule]\nkind = \"lps\"\nyoungs_modulus = \"70 GPa\"\npoissons_ratio = 0.22\n"
+                   "horizon = \"1.51 mm\"\ncritical_stretch = 0.002\n"));
   RoundsRun a(text, text.body, {}, 1e-3), b(own, own.body, {}, 1e-3);
   Asked asked;
   asked.energies = true;
@@ -118,7 +118,7 @@ TEST(Program, GlassIsThePeridynamicSolid) {
 
 // One bond of two particles, pulled and pushed: its force is that of a spring in series with a slider.
 TEST(Program, ASpringThatYieldsRemembers) {
-  const Scene scene = scene_of(
+  const Scene scene = scene_of_text(
       "mass = \"1 g\"\n"
       "box = { size = \"[9, 9, 9] mm\" }\n"
       "particle = [ { position = \"[1, 1, 1] mm\" }, { position = \"[2, 1, 1] mm\" } ]\n"
@@ -142,7 +142,7 @@ TEST(Program, ASpringThatYieldsRemembers) {
 
 // What is only looked at does not yield.
 TEST(Program, ALookChangesNothing) {
-  const Scene scene = scene_of(bar(kWave));
+  const Scene scene = scene_of_text(heat_bar(kWave));
   RoundsRun looked(scene, scene.body, {}, 1e-3), alone(scene, scene.body, {}, 1e-3);
   for (int k = 0; k < 5; ++k) {
     Asked asked;
@@ -151,12 +151,12 @@ TEST(Program, ALookChangesNothing) {
     looked.advance(2, nullptr);
     alone.advance(2, nullptr);
   }
-  EXPECT_EQ(field(looked), field(alone));
+  EXPECT_EQ(field_in(looked), field_in(alone));
 }
 
-std::string refusal(const std::string& text) {
+std::string text_refusal(const std::string& text) {
   try {
-    parse_scene(text, kHere + "s.toml");
+    parse_scene(text, kTexts + "s.toml");
   } catch (const InputError& error) {
     const std::string what = error.what();
     return what.substr(what.find("/s.toml") == std::string::npos ? 0 : what.find("/s.toml") + 1);
@@ -166,7 +166,8 @@ std::string refusal(const std::string& text) {
 
 TEST(Program, WhatCannotBeIsRefusedAtItsPlace) {
   const auto has = [](const std::string& rule, const std::string& place, const std::string& what) {
-    const std::string said = refusal(bar("[rule]\nreach = \"1.2 * pitch\"\n" + rule));  // rule's line 7
+    const std::string said =
+        text_refusal(heat_bar("[rule]\nreach = \"1.2 * pitch\"\n" + rule));  // rule's line 7
     EXPECT_TRUE(said.starts_with("s.toml:" + place)) << said;
     EXPECT_NE(said.find(what), std::string::npos) << said;
   };
@@ -189,8 +190,8 @@ TEST(Program, WhatCannotBeIsRefusedAtItsPlace) {
   has("rule = 3\n" + round + "sum.force = \"1 N * d / r\"\n", "8:1", "unknown key 'rule'");
   const std::string pulled = "sum.force = \"1 N * d / r\"\n";
   const auto still_run = [&](const std::string& rule) {
-    std::string text = bar("[rule]\nreach = \"1.2 * pitch\"\n" + rule);
-    return refusal(text.replace(text.find("steps = 10"), 10, "steps = 10, static = { load_steps = 2 }"));
+    std::string text = heat_bar("[rule]\nreach = \"1.2 * pitch\"\n" + rule);
+    return text_refusal(text.replace(text.find("steps = 10"), 10, "steps = 10, static = { load_steps = 2 }"));
   };
   EXPECT_NE(still_run(still + round + "sum.a = \"d\"\n").find("the rule moves none"), std::string::npos);
   EXPECT_NE(still_run(round + pulled).find("needs the stiffness of the rule"), std::string::npos);
@@ -200,12 +201,13 @@ TEST(Program, WhatCannotBeIsRefusedAtItsPlace) {
   EXPECT_EQ(still_run("stiffness = \"1 mN/m\"\n" + round + pulled), "none");
   const std::string file = "[rule]\nfile = \"texts/heat.toml\"\n";
   const auto of_file = [&](const std::string& more, const std::string& what) {
-    EXPECT_NE(refusal(bar(file + more)).find(what), std::string::npos) << refusal(bar(file + more));
+    EXPECT_NE(text_refusal(heat_bar(file + more)).find(what), std::string::npos)
+        << text_refusal(heat_bar(file + more));
   };
   of_file("parameters.colour = 3\n", "s.toml:8:21: the rule has no parameter 'colour'");
   of_file("parameters.conductivity = \"3 m\"\n", "'conductivity' must be");
   of_file("start.U = 3\n", "the rule has no field 'U'");
-  EXPECT_NE(refusal(bar("rule = \"texts/none.toml\"\n")).find("no file 'texts/none.toml'"),
+  EXPECT_NE(text_refusal(heat_bar("rule = \"texts/none.toml\"\n")).find("no file 'texts/none.toml'"),
             std::string::npos);
 }
 
