@@ -99,6 +99,8 @@ class Lowering {
         input_(std::move(input)),
         made_(graph.nodes().size()) {}
 
+  // v_j - v_i by axis, which has a format of its own.
+  void relative(std::function<Scaled(uint32_t)> velocity) { relative_ = std::move(velocity); }
   // Of a pair: r2 as a node, and up to where it counts, m^2.
   void pairs(const Radial& radial, const Scaled& r2, double reach2) {
     radial_ = &radial, r2_ = r2, reach2_ = reach2;
@@ -113,20 +115,39 @@ class Lowering {
 
  private:
   bool of_r(NodeId id) const { return radial_ != nullptr && radial_->of_r(id); }
-  // Whether a table of r is a factor of it.
+  // Whether a table of r is a factor of it, or of each part of a sum.
   bool wants(NodeId id) const {
-    if (radial_ != nullptr && radial_->is_r2(id)) return false;
-    if (of_r(id)) return true;
     const RealNode& node = graph_.at(id);
-    switch (node.op) {
-      case RealOp::multiply:
-        return wants(node.of[0]) || wants(node.of[1]);
-      case RealOp::divide:
-        return wants(node.of[0]) || of_r(node.of[1]);
-      case RealOp::negate:
-        return wants(node.of[0]);
-      default:
-        return false;
+    if (of_r(id)) return !radial_->is_r2(id);
+    if (node.op == RealOp::add || node.op == RealOp::subtract) return wants(node.of[0]) && wants(node.of[1]);
+    if (!is_product(node.op)) return false;
+    Factors factors;
+    gather(id, false, factors);
+    return !factors.of_r.empty();
+  }
+
+  // A product taken apart: what is constant, what depends on r alone, and what else there is.
+  struct Factors {
+    double constant = 1;
+    std::vector<std::pair<NodeId, bool>> of_r, others;  // true: it divides
+  };
+  static bool is_product(RealOp op) {
+    return op == RealOp::multiply || op == RealOp::divide || op == RealOp::negate;
+  }
+  void gather(NodeId id, bool divides, Factors& to) const {
+    const RealNode& node = graph_.at(id);
+    if (node.op == RealOp::constant) {
+      to.constant *= divides ? 1 / node.value : node.value;
+    } else if (of_r(id)) {
+      to.of_r.emplace_back(id, divides);
+    } else if (node.op == RealOp::negate) {
+      to.constant = -to.constant;
+      gather(node.of[0], divides, to);
+    } else if (is_product(node.op)) {
+      gather(node.of[0], divides, to);
+      gather(node.of[1], divides != (node.op == RealOp::divide), to);
+    } else {
+      to.others.emplace_back(id, divides);
     }
   }
 
@@ -140,15 +161,14 @@ class Lowering {
       case RealOp::input:
         return input_(node.input);
       case RealOp::add:
-        return integers_.add(of(0), of(1));
+        return integers_.add(of(0, unit), of(1, unit));
       case RealOp::subtract:
-        return integers_.subtract(of(0), of(1));
+        if (is_relative(node)) return relative_(graph_.at(node.of[0]).input.index);
+        return integers_.subtract(of(0, unit), of(1, unit));
       case RealOp::multiply:
-        return product(node.of[0], node.of[1], unit);
       case RealOp::divide:
-        return quotient(node.of[0], node.of[1], unit);
       case RealOp::negate:
-        return integers_.negate(of(0, unit));
+        return product(id, unit);
       case RealOp::absolute:
         return integers_.absolute(of(0));
       case RealOp::least:
@@ -172,31 +192,40 @@ class Lowering {
         return of_one(node, of(0));
     }
   }
+  // v_j - v_i of one axis.
+  bool is_relative(const RealNode& node) const {
+    const RealNode &a = graph_.at(node.of[0]), &b = graph_.at(node.of[1]);
+    return relative_ && node.op == RealOp::subtract && a.op == RealOp::input && b.op == RealOp::input &&
+           a.input.source == Source::other_velocity && b.input.source == Source::own_velocity &&
+           a.input.index == b.input.index;
+  }
   static bool is_truth(RealOp op) {
     return op == RealOp::below || op == RealOp::at_most || op == RealOp::equal || op == RealOp::both ||
            op == RealOp::either || op == RealOp::inverse;
   }
 
-  // The factor that a table makes comes last, in what is left of the unit.
-  Scaled product(NodeId a, NodeId b, double unit) {
-    if (wants(a) && !wants(b)) std::swap(a, b);
-    const Scaled x = value(a);
-    const double left = x.constant() ? (x.number != 0 ? unit / std::abs(x.number) : 0) : unit / x.unit;
-    return integers_.multiply(x, value(b, wants(b) ? left : 0));
-  }
-  Scaled quotient(NodeId a, NodeId b, double unit) {
-    if (of_r(b)) {
-      const Scaled x = value(a);
-      const double left = x.constant() ? (x.number != 0 ? unit / std::abs(x.number) : 0) : unit / x.unit;
-      return integers_.multiply(x, table([&](double r2) { return 1 / radial_->at(b, r2); }, left));
+  // One table for all that depends on r, last, in what is left of the unit.
+  Scaled product(NodeId id, double unit) {
+    Factors factors;
+    gather(id, false, factors);
+    if (!std::isfinite(factors.constant)) refuse("the rule divides by 0");
+    Scaled all = Scaled::of(factors.constant);
+    for (const auto& [of, divides] : factors.others) {
+      const Scaled x = value(of);
+      all = integers_.multiply(all, divides ? of_one({RealOp::divide, {}, 0, {}}, x) : x);
     }
-    const Scaled x = value(a, 0), y = value(b);
-    if (!y.constant()) {
-      const RealNode reciprocal{RealOp::divide, {}, 0, {}};
-      return integers_.multiply(x, of_one(reciprocal, y));
-    }
-    if (y.number == 0) refuse("the rule divides by 0");
-    return integers_.multiply(x, Scaled::of(1 / y.number));
+    if (factors.of_r.empty()) return all;
+    const auto f = [&](double r2) {
+      double made = 1;
+      for (const auto& [of, divides] : factors.of_r) {
+        const double x = radial_->at(of, r2);
+        made *= divides ? 1 / x : x;
+      }
+      return made;
+    };
+    if (all.constant() && all.number == 0) return all;
+    const double left = all.constant() ? unit / std::abs(all.number) : unit / all.unit;
+    return integers_.multiply(all, table(f, left));
   }
   // A function of one value that is no function of r: by a table of 14 octaves below the value's largest.
   Scaled of_one(const RealNode& node, const Scaled& a) {
@@ -244,6 +273,7 @@ class Lowering {
   Builder& b_;
   Integers integers_;
   std::function<Scaled(const RealInput&)> input_;
+  std::function<Scaled(uint32_t)> relative_;
   std::vector<std::optional<Scaled>> made_;
   const Radial* radial_ = nullptr;
   Scaled r2_;
@@ -341,6 +371,17 @@ class Program {
     return Integers::scaled(node, base_.widths.velocity_frac(), base_.cell_edge / base_.dt);
   }
 
+  // As the pair law has it: a difference that does not fit is a fault.
+  Scaled relative_velocity(Builder& b, uint32_t axis) const {
+    if (static_cast<int>(axis) >= base_.axes) return Scaled::of(0);
+    const auto a = static_cast<int>(axis);
+    const int apart = b.sub(graph::read_velocity(b, out_.program, graph::Source::other_v, a),
+                            graph::read_velocity(b, out_.program, graph::Source::own_v, a));
+    const int w =
+        b.check(b.round(apart, base_.w_shift), base_.widths.relative_velocity_bits, Fault::relative_velocity);
+    return Integers::scaled(w, base_.widths.relative_velocity_frac, base_.cell_edge / base_.dt);
+  }
+
   struct SumScale {
     Scaled term;  // its unit and frac
     int sum = 0, component = 0;
@@ -361,6 +402,7 @@ class Program {
     const Radial radial(from.pair);
     const double edge = base_.cell_edge;
     Lowering pair(from.pair, b, [&](const RealInput& input) { return pair_input(b, input, d); });
+    pair.relative([&](uint32_t axis) { return relative_velocity(b, axis); });
     pair.pairs(radial, Integers::scaled(b.within(r2), 2 * D, edge * edge), rule_.reach * rule_.reach);
     const std::vector<SumScale> scales = add_terms(k, pair, b, round);
     round.when = b.when();

@@ -27,7 +27,8 @@ struct InIntegers {
     const Rule& rule = scene.rule;
     const double edge = rule.cutoff();
     Widths widths;
-    widths.position_frac = 28, widths.guard = 10, widths.difference_frac = 24;
+    widths.position_frac = 28, widths.guard = 10, widths.difference_frac = 23;
+    widths.relative_velocity_frac = 30, widths.relative_velocity_bits = 27;
     widths.velocity_bits = widths.sum_bits = widths.displacement_bits = 39;
     fixed = quantise_without_law(rule, edge, widths);
     Vec3 low = Vec3::Constant(INFINITY), high = -low;
@@ -155,7 +156,7 @@ std::string integer_refusal(const std::string& text) {
 }
 
 TEST(IntegerProgram, WhatIntegersDoNotHoldIsRefused) {
-  const std::string run = "run = { dt = \"1 us\", steps = 10 }\n";
+  const std::string run = "run = { dt = \"10 ns\", steps = 10 }\n";
   EXPECT_NE(integer_refusal(small_block(run) + "[rule]\nfile = \"texts/glass.toml\"\n")
                 .find("bonds that keep what they hold"),
             std::string::npos);
