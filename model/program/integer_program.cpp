@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 
 #include "model/base/error.h"
@@ -155,7 +156,7 @@ class Lowering {
     const RealNode& node = graph_.at(id);
     if (node.op == RealOp::constant) return Scaled::of(node.value);
     if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
-    if (of_r(id) && !is_truth(node.op)) return table([&](double r2) { return radial_->at(id, r2); }, unit);
+    if (of_r(id) && !is_truth(node.op)) return table({{id, false}}, unit);
     const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
     switch (node.op) {
       case RealOp::input:
@@ -215,17 +216,9 @@ class Lowering {
       all = integers_.multiply(all, divides ? of_one({RealOp::divide, {}, 0, {}}, x) : x);
     }
     if (factors.of_r.empty()) return all;
-    const auto f = [&](double r2) {
-      double made = 1;
-      for (const auto& [of, divides] : factors.of_r) {
-        const double x = radial_->at(of, r2);
-        made *= divides ? 1 / x : x;
-      }
-      return made;
-    };
     if (all.constant() && all.number == 0) return all;
     const double left = all.constant() ? unit / std::abs(all.number) : unit / all.unit;
-    return integers_.multiply(all, table(f, left));
+    return integers_.multiply(all, table(factors.of_r, left));
   }
   // A function of one value that is no function of r: by a table of 14 octaves below the value's largest.
   Scaled of_one(const RealNode& node, const Scaled& a) {
@@ -241,8 +234,24 @@ class Lowering {
     return integers_.function(a, f, std::ldexp(most, -14), most, 0);
   }
 
+  // Of a product of what depends on r alone; the axes of a vector share it.
+  Scaled table(const std::vector<std::pair<NodeId, bool>>& factors, double unit) {
+    const auto [at, fresh] = tables_.try_emplace({factors, unit});
+    if (fresh)
+      at->second = fitted(
+          [&](double r2) {
+            double made = 1;
+            for (const auto& [of, divides] : factors) {
+              const double x = radial_->at(of, r2);
+              made *= divides ? 1 / x : x;
+            }
+            return made;
+          },
+          unit);
+    return at->second;
+  }
   // From where the function is not too steep. Nearer pairs are a fault, not a wrong force.
-  Scaled table(const std::function<double(double)>& f, double unit) {
+  Scaled fitted(const std::function<double(double)>& f, double unit) {
     double usual = 0;
     constexpr int kSamples = 64;
     const auto at = [&](double part) { return f(part * part * reach2_); };
@@ -275,6 +284,7 @@ class Lowering {
   std::function<Scaled(const RealInput&)> input_;
   std::function<Scaled(uint32_t)> relative_;
   std::vector<std::optional<Scaled>> made_;
+  std::map<std::pair<std::vector<std::pair<NodeId, bool>>, double>, Scaled> tables_;
   const Radial* radial_ = nullptr;
   Scaled r2_;
   double reach2_ = 0;
