@@ -138,6 +138,23 @@ TEST(IntegerProgram, AForceMovesParticlesAsInDoublesAndKeepsMomentum) {
   EXPECT_NEAR(golden.read(asked).energies.total(), doubles.read(asked).energies.total(), 0.01);
 }
 
+// A state in doubles holds all bits of places and fields.
+TEST(IntegerProgram, ARunInTwoPartsIsTheRunInOne) {
+  std::string text = kLiquidText;
+  text.replace(
+      text.find("[[rule.round]]\n"), 15,
+      "[rule.particle.count]\nrange = [0, 100]\n[[rule.round]]\nfinish.count = \"min(count + 0.3, 90)\"\n");
+  const InIntegers made(text, 64);
+  IntegerRun whole = made.run(), first = made.run();
+  whole.advance(40, nullptr), first.advance(25, nullptr);
+  IntegerRun second(made.scene, *first.saved_body(),
+                    {made.program, made.fixed, made.lattice, made.origin, made.room}, 25);
+  EXPECT_EQ(second.hash(), first.hash());
+  second.advance(15, nullptr);
+  EXPECT_EQ(second.hash(), whole.hash());
+  EXPECT_NE(first.hash(), whole.hash());
+}
+
 TEST(IntegerProgram, PairsNearerThanATableReachesAreAFault) {
   std::string text = kLiquidText;
   text.replace(text.find("uniform = [0.4, 0.3, 0.1]"), 25, "uniform = [0, -90, 0]    ");
