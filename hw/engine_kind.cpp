@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "hw/state_bounds.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/golden_engine.h"
 #include "model/run/integer_run.h"
 #include "model/run/reference_engine.h"
@@ -56,6 +57,8 @@ ProgramSetting program_setting(const Plan& plan) {
 }
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan) {
+  // A plan that was made for doubles has no program.
+  if (plan.program == nullptr) refuse_rounds(scene.rule, "the golden engine");
   EngineKind kind = fixed_kind("golden", scene, plan);
   if (plan.program != nullptr) {
     kind.make = [&scene, &plan](CheckpointReader*, bool) {

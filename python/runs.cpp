@@ -60,7 +60,7 @@ void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
   if (!given.engine.empty()) given.options.check({engine_row(given.engine).name}, {});
-  const Loaded loaded = load_plan(sources);
+  const Loaded loaded = load_plan(sources, false, given.engine.empty() ? "lattice" : given.engine);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const RunAsked asked = for_scene(given, scene);

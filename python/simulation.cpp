@@ -15,6 +15,7 @@
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/golden_engine.h"
 #include "model/run/rounds_run.h"
 #include "model/scene/static_loading.h"
@@ -79,6 +80,9 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   if (engine.empty()) engine_name_ = engine_for(loaded.scene);
   options.check({engine_name_}, {});
   check_runs(loaded.scene, loaded.setup.plan.arch, engine_name_);
+  if (engine_row(engine_name_).here == Here::golden)
+    with_places(loaded.scene, loaded.setup.plan.arch,
+                [&] { refuse_rounds(loaded.scene.rule, "a Simulation of golden"); });
   check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!anyway) check_size(loaded, engine_name_, options);
   real_ = options.is_real(engine_name_);

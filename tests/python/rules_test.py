@@ -95,6 +95,24 @@ class Rounds(unittest.TestCase):
         self.assertEqual(cuboct.Simulation(scene_file("lj_block.toml")).fields, {})
 
 
+class Text(unittest.TestCase):
+    def test_a_rule_that_is_text(self):
+        scene = cuboct.Scene.load(scene_file("rules/heat.toml"))
+        scene["run"].update(steps=40, probe_every=10)
+        doubles, integers = cuboct.run(scene), cuboct.run(scene, "golden")
+        self.assertEqual((doubles.engine, integers.engine), ("reference", "golden"))
+        self.assertIsNotNone(integers.hash)
+        self.assertGreater(doubles.curves["left.T"][-1], 306)
+        self.assertAlmostEqual(integers.curves["left.T"][-1], doubles.curves["left.T"][-1], places=5)
+        simulation = cuboct.Simulation(scene)
+        simulation.step(40)
+        self.assertEqual(simulation.fields["T"].shape, (simulation.particles,))
+        self.assertAlmostEqual(simulation.fields["T"].mean(), 350, places=9)
+        with self.assertRaises(cuboct.InputError) as caught:
+            cuboct.Simulation(scene, "golden")
+        self.assertEqual(caught.exception.key, "rule.file")
+
+
 class Static(unittest.TestCase):
     def test_static_loading(self):
         whole = cuboct.run(pulled())
