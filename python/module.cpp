@@ -264,7 +264,13 @@ PYBIND11_MODULE(_cuboct, module) {
                fields = simulation.fields();
              }
              py::dict out;
-             for (const auto& [name, values] : fields) out[name.c_str()] = array_of(values);
+             const size_t particles = simulation.particles();
+             for (const auto& [name, values] : fields) {
+               py::array flat = array_of(values);
+               const size_t numbers = particles > 0 ? values.size() / particles : 1;
+               if (numbers > 1) flat = flat.reshape({particles, numbers});
+               out[name.c_str()] = flat;
+             }
              return out;
            })
       .def("step_count", &Simulation::step_count, Unlocked())

@@ -255,9 +255,9 @@ void Simulation::leave(const std::string& directory) {
 
 std::vector<std::pair<std::string, std::vector<double>>> Simulation::fields() {
   const std::lock_guard lock(mutex_);
-  const auto* rounds = dynamic_cast<const RoundsRun*>(engine_.get());
-  if (rounds == nullptr || !rounds->breaks()) return {};
-  return {{"damage", rounds->damage()}};
+  auto* rounds = dynamic_cast<RoundsRun*>(engine_.get());
+  if (rounds == nullptr) return {};
+  return rounds->shown();
 }
 
 std::vector<std::string> Simulation::type_names() const {

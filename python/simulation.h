@@ -56,7 +56,7 @@ class Simulation {
   EnergiesNow energies();
   std::vector<Curve> curves();
   void leave(const std::string& directory);  // the present state, where another run may begin
-  // By particle: "damage", of bonds that break the share that is broken; none of other rules.
+  // By name what a [rule] shows of its particles, [particle x its numbers]; none of pair laws.
   std::vector<std::pair<std::string, std::vector<double>>> fields();
 
   // m/s, of all particles that the constraint holds or moves, from the next step on.

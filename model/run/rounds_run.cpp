@@ -139,6 +139,17 @@ std::vector<double> RoundsRun::damage() const {
   return damage;
 }
 
+std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
+  std::vector<std::pair<std::string, std::vector<double>>> fields;
+  const std::vector<RuleField>& names = rounds_of(scene_.rule)->declaration().shown;
+  std::vector<std::vector<double>> values;
+  if (!names.empty()) values = engine_->terms()->shown();
+  for (size_t k = 0; k < names.size(); ++k) fields.emplace_back(names[k].name, std::move(values[k]));
+  if (breaks() && std::ranges::none_of(names, [](const RuleField& f) { return f.name == "damage"; }))
+    fields.emplace_back("damage", damage());
+  return fields;
+}
+
 EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {
   EngineKind kind;
   kind.name = "reference";

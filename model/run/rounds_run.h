@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "model/run/engine.h"
@@ -38,6 +40,8 @@ class RoundsRun : public Engine {
   // Whether the rule's bonds can break; of each particle's the share that did, as the last step left it.
   bool breaks() const;
   std::vector<double> damage() const;
+  // What the rule shows of its particles, by name: [particle x its numbers]. With "damage" where bonds break.
+  std::vector<std::pair<std::string, std::vector<double>>> shown();
 
  protected:
   const Body& body();

@@ -186,7 +186,7 @@ class Simulation:
 
     @property
     def fields(self) -> dict[str, NDArray[np.float64]]:
-        """What the rule knows of each particle, (particles,). `damage`, of rules whose bonds break: the share that is broken, 0 to 1. A copy."""
+        """What a rule of the scene shows of each particle, (particles,) or of vectors (particles, 3). `damage`, where bonds break: 0 to 1. A copy."""
         return self._of.fields()
 
     @property
