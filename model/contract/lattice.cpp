@@ -132,13 +132,15 @@ void Lattice::missing_between(size_t row, int dz, int dy, std::vector<Cell>& mis
 }
 
 // The cells around `cell`, itself included: bit bit_of(dx, dy, dz) is set where the lattice has that one.
+// The cell's own row may not be there yet.
 uint32_t Lattice::present_around(const Cell& cell) const {
   uint32_t present = 0;
-  const size_t row = row_at(cell[2], cell[1]);
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy) {
-      const Span beside = around(row, dz, dy);
-      if (beside.begin == beside.end) continue;
+      const Cell at = wrapped({0, cell[1] + dy, cell[2] + dz});
+      const size_t row = row_at(at[2], at[1]);
+      if (row + 1 >= rows_.size()) continue;
+      const Span beside{rows_[row].first, rows_[row + 1].first};
       for (int dx = -1; dx <= 1; ++dx)
         if (in_row(beside, wrapped({cell[0] + dx, 0, 0})[0]) != kNoCell) present |= 1u << bit_of(dx, dy, dz);
     }
