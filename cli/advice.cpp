@@ -29,6 +29,9 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
                          std::abs(std::ldexp(static_cast<double>(stop.number), -w.relative_velocity_frac)),
                          std::ldexp(1.0, w.relative_velocity_bits - 1 - w.relative_velocity_frac));
     case Fault::strength:
+      if (plan.program != nullptr)
+        return fmt::format("a pair of particle {} came nearer than the tables of the rule reach",
+                           stop.particle);
       return fmt::format("law and damping of a pair of particle {} together exceed {} bits", stop.particle,
                          w.strength_bits);
     case Fault::full_x:
@@ -50,7 +53,7 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
   return "";
 }
 
-const char* what_helps(Fault fault) {
+const char* what_helps(Fault fault, bool program) {
   switch (fault) {
     case Fault::velocity:
       return "use a smaller run.dt or a larger node.cell_edge; a run that was stable until then met an "
@@ -63,7 +66,8 @@ const char* what_helps(Fault fault) {
     case Fault::relative_velocity:
       return "use a smaller run.dt or more widths.relative_velocity_bits";
     case Fault::strength:
-      return "use a smaller run.dt, less damping or more widths.strength_bits";
+      return program ? "use a smaller run.dt, or the reference engine"
+                     : "use a smaller run.dt, less damping or more widths.strength_bits";
     case Fault::full_x:
     case Fault::full_y:
     case Fault::full_z:
@@ -92,7 +96,8 @@ std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& sce
                              ? fmt::format(" (now {:.3g} of the limit)", scene.rule.dt / scene.dt_limit)
                              : "";
   return fmt::format("cell ({} {} {}) at ({:.4g}, {:.4g}, {:.4g}) m: {}; {}{}", c[0], c[1], c[2], centre[0],
-                     centre[1], centre[2], what_happened(stop, plan), what_helps(stop.fault), dt);
+                     centre[1], centre[2], what_happened(stop, plan),
+                     what_helps(stop.fault, plan.program != nullptr), dt);
 }
 
 }  // namespace cuboct
