@@ -133,8 +133,11 @@ TEST_F(LimitsTest, ManyRegionsAreFound) {
 }
 
 TEST_F(LimitsTest, Parentheses) {
-  const std::string deep(200'000, '(');
-  EXPECT_EQ(refusal("[packing]\npitch = \"1 " + deep + "m" + std::string(200'000, ')') + "\"\n"),
+  const auto nested = [](size_t depth) {
+    return "[packing]\npitch = \"1 " + std::string(depth, '(') + "m" + std::string(depth, ')') + "\"\n";
+  };
+  EXPECT_EQ(refusal(nested(200'000)), ":2:9: 'pitch' is a text of 400003 bytes: at most 4096 are read\n");
+  EXPECT_EQ(refusal(nested(2'000)),
             ":2:9: more than 64 parentheses within one another in \"1 " + std::string(58, '(') + "...\"\n");
 }
 
