@@ -108,7 +108,7 @@ class Scene(_Tables):
 
     @classmethod
     def like(cls, template: str) -> Self:
-        """A template of `cuboct new`: tension, impact, drop, beam, gas, metal, crack, sheet or release."""
+        """A template of `cuboct new`: tension, impact, drop, beam, gas, metal, crack, sheet, release or rule."""
         return cls._of(_cuboct.template_text(template), template)
 
     def check(self, arch: "ArchLike" = None, *, stage: str | None = None) -> dict[str, Any]:
