@@ -173,9 +173,9 @@ void add_motion(Builder& builder, FixedProgram& program, const FixedRule& rule,
   for (int a = 0; a < program.axes; ++a) motion.add_axis(a, kicks[static_cast<size_t>(a)]);
 }
 
-FixedProgram pair_program(const FixedRule& rule, int capacity) {
+FixedProgram begun_program(const std::string& name, const FixedRule& rule, int capacity) {
   FixedProgram program;
-  program.name = "pair";
+  program.name = name;
   program.axes = rule.axes;
   program.types = static_cast<int>(rule.types.size());
   program.partners = 27 * capacity - 1;
@@ -183,6 +183,11 @@ FixedProgram pair_program(const FixedRule& rule, int capacity) {
   program.guard = rule.widths.guard;
   program.velocity = of_bits(rule.widths.velocity_bits);
   program.displacement = of_bits(rule.widths.displacement_bits);
+  return program;
+}
+
+FixedProgram pair_program(const FixedRule& rule, int capacity) {
+  FixedProgram program = begun_program("pair", rule, capacity);
   program.rounds.push_back(PairGraph(rule, program).made());
   graph::Round& round = program.rounds.back();
   Builder finish;

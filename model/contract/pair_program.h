@@ -2,6 +2,7 @@
 // The pair law as a program: docs/reference/numeric.md, node by node.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "model/contract/fixed_rule.h"
@@ -13,6 +14,9 @@ namespace cuboct {
 // For cells of so many particles. It makes of each pair what pair_kick makes, and of each particle what
 // finish makes, faults included.
 graph::FixedProgram pair_program(const FixedRule& rule, int capacity);
+
+// A program of this rule's formats and types for cells of so many particles, without fields and rounds.
+graph::FixedProgram begun_program(const std::string& name, const FixedRule& rule, int capacity);
 
 // The last finish of any program: what kicks, constraints and gravity make of a particle's velocity, place
 // and displacement. `kicks`: nodes of `builder`, by axis, P+G fractional bits, of the lightest material.

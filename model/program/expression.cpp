@@ -238,19 +238,8 @@ class Parser {
   int depth_ = 0;
 };
 
-void gather(const Expression& e, std::vector<std::string>& names) {
-  if (e.kind == Expression::Kind::name) names.push_back(e.text);
-  for (const Expression& part : e.of) gather(part, names);
-}
-
 }  // namespace
 
 Expression parse_expression(std::string_view text) { return Parser(text).whole(); }
-
-std::vector<std::string> names_in(const Expression& expression) {
-  std::vector<std::string> names;
-  gather(expression, names);
-  return names;
-}
 
 }  // namespace cuboct

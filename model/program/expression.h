@@ -34,7 +34,4 @@ struct FormulaError {
 // Throws FormulaError.
 Expression parse_expression(std::string_view text);
 
-// Every name in it that is no function's, in order, with repetitions.
-std::vector<std::string> names_in(const Expression& expression);
-
 }  // namespace cuboct

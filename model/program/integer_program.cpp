@@ -297,15 +297,7 @@ class Program {
       : rule_(rule), base_(base), start_(start) {
     if (rule.declaration.bonds == BondRange::reference)
       refuse("bonds that keep what they hold are not in integers yet");
-    FixedProgram& p = out_.program;
-    p.name = rule.declaration.name;
-    p.axes = base.axes;
-    p.types = static_cast<int>(base.types.size());
-    p.partners = 27 * capacity - 1;
-    p.position_frac = base.widths.position_frac;
-    p.guard = base.widths.guard;
-    p.velocity = of_bits(base.widths.velocity_bits);
-    p.displacement = of_bits(base.widths.displacement_bits);
+    out_.program = begun_program(rule.declaration.name, base, capacity);
     fields();
     for (size_t k = 0; k < rule.rounds.size(); ++k) add_round(k);
   }

@@ -135,6 +135,14 @@ class Understanding {
       define_field(scope, program_.bond[k].name, Source::bond_field, program_.bond[k],
                    text_.bond[k].dimension);
   }
+  // All that a formula of a particle and one of its bonds may use.
+  void define_bond_terms(Scope& scope) const {
+    define_constants(scope);
+    define_pair(scope);
+    define_particle(scope, Source::own_field, "_i", text_.particle.size());
+    define_particle(scope, Source::other_field, "_j", text_.particle.size());
+    define_bonds(scope, program_.bond.size());
+  }
   void define_finish(Scope& scope) const {
     scope.define_vector("v", Source::own_velocity, 0, quantity::velocity.dimension);
     scope.define_vector("x", Source::position, 0, quantity::length.dimension);
@@ -181,11 +189,7 @@ class Understanding {
     ProgramRound round;
     round.name = from.name;
     Scope pair(round.pair, text_.units);
-    define_constants(pair);
-    define_pair(pair);
-    define_particle(pair, Source::own_field, "_i", text_.particle.size());
-    define_particle(pair, Source::other_field, "_j", text_.particle.size());
-    define_bonds(pair, program_.bond.size());
+    define_bond_terms(pair);
     for (const RuleText::Write& write : from.bonds) write_bond(write, pair, round);
     std::vector<SumValue> sums;
     for (const RuleText::Sum& sum : from.sums) sums.push_back(sum_of(sum, pair, round));
@@ -294,11 +298,7 @@ class Understanding {
   void energies() {
     if (text_.pair_energy) {
       Scope scope(program_.pair_energy, text_.units);
-      define_constants(scope);
-      define_pair(scope);
-      define_particle(scope, Source::own_field, "_i", text_.particle.size());
-      define_particle(scope, Source::other_field, "_j", text_.particle.size());
-      define_bonds(scope, program_.bond.size());
+      define_bond_terms(scope);
       program_.pair_energy_at =
           scope.value_of(*text_.pair_energy, "the energy of a pair", Kind::number, kEnergy).node[0];
     }
