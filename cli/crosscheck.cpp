@@ -17,6 +17,7 @@
 #include "cli/summary.h"
 #include "hw/engines.h"
 #include "hw/program/options.h"
+#include "hw/scene_engine.h"
 #include "model/analysis/meter.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
@@ -33,7 +34,7 @@ namespace {
 
 struct CrosscheckOptions {
   Input input;
-  std::vector<std::string> engines{"golden", "lattice", "systemc", "rtl"};
+  std::vector<std::string> engines;  // empty: those that the scene has
   EngineOptions choice;
   std::string out;
   uint64_t steps = 0;
@@ -216,8 +217,12 @@ struct Crossed {
 };
 
 // `leave`: a directory for the last state; empty: none is asked for.
-Crossed cross_once(const CrosscheckOptions& options, const std::string& leave) {
-  const Loaded loaded = load_plan(options.input);
+Crossed cross_once(CrosscheckOptions options, const std::string& leave) {
+  Loaded loaded{load_scene(options.input.scene, {options.input.stage, options.input.from, false}), {}};
+  if (options.engines.empty()) options.engines = engines_to_cross(loaded.scene);
+  check_engines(options);
+  loaded.setup.plan = shared_plan_of(loaded.scene, read_arch(options.input.arch), options.engines);
+  const bool text = loaded.setup.plan.program != nullptr;
   check_held(loaded.scene, loaded.setup.plan);
   const Scratch scratch;
   std::optional<DirectoryLock> lock;
@@ -231,6 +236,8 @@ Crossed cross_once(const CrosscheckOptions& options, const std::string& leave) {
   request.steps = options.steps_given ? options.steps : loaded.scene.steps;
   if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, request.steps);
   if (!leave.empty()) request.frames = {request.steps};
+  std::optional<RunState> last;  // of a rule of text, whose fields no State of a trace has
+  if (text) request.keep = [&](const RunState& frame) { last = frame; };
   std::vector<Trace> traces =
       run_all({options.input, options.choice, loaded, directory}, options.engines, request);
   for (size_t i = 0; i < traces.size(); ++i)
@@ -241,9 +248,9 @@ Crossed cross_once(const CrosscheckOptions& options, const std::string& leave) {
   const int code = comparison.compare_all();
   Crossed crossed{code, traces[0].reached.has_value(), comparison.items()};
   if (code == 0 && !leave.empty()) {
-    const State last = std::move(traces[0].frames.back());
+    if (!text) last = std::move(traces[0].frames.back());
     traces[0].frames.clear();
-    leave_state(leave, head_of(loaded, false, false), last, traces[0]);
+    leave_state(leave, head_of(loaded, text, false), *last, traces[0]);
   }
   return crossed;
 }
@@ -292,7 +299,7 @@ int cross_real(CrosscheckOptions options) {
 int crosscheck(const CrosscheckOptions& options) {
   catch_interrupts();
   if (of_real_numbers(options)) return cross_real(options);
-  check_engines(options);
+  if (!options.engines.empty()) check_engines(options);
   const std::vector<StageName> names = stages_of(options.input.scene);
   const StageRange range = stages_to_take(options.input.scene, names, options.input.stage);
   if (range.end - range.first > 1) return cross_stages(options, names, range);
@@ -312,7 +319,9 @@ void add_crosscheck(Command& app, int& exit_code) {
   options->input.add_start_to(command);
   options->input.add_stalls_to(command);
   options->choice.add_machines(command);
-  command.option("--engines", options->engines, "which ones; default: golden,lattice,systemc,rtl")
+  command
+      .option("--engines", options->engines,
+              "which ones; default: golden,lattice,systemc,rtl, of a rule of text golden,lattice")
       .delimiter(',')
       .type_name("A,B,...");
   command

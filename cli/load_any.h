@@ -13,7 +13,7 @@ namespace cuboct {
 // As load_plan, or with what stands for a plan (hw/real_plan.h): of rules of several rounds, and of rules of
 // pairs that no integers hold, where `engine` always computes in doubles. None is named: the one that the
 // scene asks for.
-Loaded load_any(const Input& input, const std::string& engine = "lattice");
+Loaded load_any(const Input& input, const std::string& engine = "");
 
 // Whether it is a plan, and not what stands for one.
 inline bool has_machine(const Plan& plan) { return plan.lattice.size() > 0; }

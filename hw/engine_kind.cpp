@@ -8,7 +8,6 @@
 #include "hw/state_bounds.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/golden_engine.h"
-#include "model/run/integer_run.h"
 #include "model/run/reference_engine.h"
 #include "model/run/static_engine.h"
 
@@ -52,21 +51,24 @@ State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
   return from ? checked_state(*from, plan) : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
 }
 
-ProgramSetting program_setting(const Plan& plan) {
-  return {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
+std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, CheckpointReader* from,
+                                        const MakeIntegerEngine& make) {
+  const ProgramSetting setting{*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
+  if (from == nullptr) return std::make_unique<IntegerRun>(scene, scene.body, setting, 0, make);
+  const State state =
+      state_of_checkpoint(checked_state(*from, plan), plan.program->program, from->head().engine.own);
+  return std::make_unique<IntegerRun>(scene, setting, state, make);
 }
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   // A plan that was made for doubles has no program.
   if (plan.program == nullptr) refuse_rounds(scene.rule, "the golden engine");
   EngineKind kind = fixed_kind("golden", scene, plan);
+  kind.saves = true;
   if (plan.program != nullptr) {
-    kind.make = [&scene, &plan](CheckpointReader*, bool) {
-      return std::make_unique<IntegerRun>(scene, scene.body, program_setting(plan));
-    };
+    kind.make = [&scene, &plan](CheckpointReader* from, bool) { return integer_run(scene, plan, from); };
     return kind;
   }
-  kind.saves = true;
   kind.make = [&scene, &plan](CheckpointReader* from, bool) {
     return std::make_unique<GoldenEngine>(setting_of(scene, plan), plan.arch.capacity,
                                           begin_of(scene, plan, from));

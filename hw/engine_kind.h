@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hw/setup.h"
+#include "model/run/integer_run.h"
 #include "model/run/record.h"
 #include "model/run/state_engine.h"
 
@@ -23,6 +24,10 @@ State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from);
 EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& plan);
 // Of one in real numbers; the plan gives its hash and the cells in which speeds are told.
 EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& plan, bool floats);
+
+// Of a plan with a program: from a checkpoint, or from the scene's body.
+std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, CheckpointReader* from,
+                                        const MakeIntegerEngine& make = {});
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan);
 EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);

@@ -18,11 +18,12 @@ namespace cuboct {
 
 namespace {
 
-// Golden runs a rule that is text in integers.
+// Golden and lattice run a rule that is text in integers.
 bool runs_text(const Scene& scene, const std::string& engine) {
   const RoundsRule* rounds = rounds_of(scene.rule);
   const EngineRow* row = find_engine(engine);
-  return rounds != nullptr && rounds->text() != nullptr && row != nullptr && row->here == Here::golden;
+  return rounds != nullptr && rounds->text() != nullptr && row != nullptr &&
+         (row->here == Here::golden || row->here == Here::lattice);
 }
 
 }  // namespace
@@ -50,6 +51,16 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
     if (!doubles || formats_hold(scene, arch)) throw;
     return real_plan_of(scene, arch);
   }
+}
+
+Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines) {
+  for (const std::string& engine : engines) check_runs(scene, arch, engine);
+  return scene_plan_of(scene, arch, engines.front());
+}
+
+std::vector<std::string> engines_to_cross(const Scene& scene) {
+  if (runs_text(scene, "lattice")) return {"golden", "lattice"};
+  return {"golden", "lattice", "systemc", "rtl"};
 }
 
 uint64_t whole_steps(const Scene& scene, uint64_t steps) {

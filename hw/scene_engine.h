@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which engine runs a scene, and with what plan. Static loading and rules of several rounds need the
-// reference engine; no other place tells them from motion by a pair law.
+// reference engine, but for rules that are text; no other place tells them from motion by a pair law.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,11 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
 
 // plan_of, or what stands for a plan (hw/real_plan.h): of rules of several rounds, and of rules of pairs that
 // no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene).
-Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "lattice");
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "");
+// The same for several engines that hold the same bits: each must run the scene.
+Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines);
+// Those that a crosscheck compares where nobody names any.
+std::vector<std::string> engines_to_cross(const Scene& scene);
 
 // Of steps or an interval, as the scene can do them: static loading knows whole load steps.
 uint64_t whole_steps(const Scene& scene, uint64_t steps);

@@ -60,7 +60,7 @@ void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
   if (!given.engine.empty()) given.options.check({engine_row(given.engine).name}, {});
-  const Loaded loaded = load_plan(sources, false, given.engine.empty() ? "lattice" : given.engine);
+  const Loaded loaded = load_plan(sources, false, given.engine);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const RunAsked asked = for_scene(given, scene);
@@ -113,8 +113,10 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   if (std::set(engines.begin(), engines.end()).size() != engines.size() || engines.size() < 2)
     throw InputError("a crosscheck needs two or more different engines", "engines=[\"golden\", \"lattice\"]");
   options.check(engines, {});
-  const Loaded loaded = load_plan(sources);
+  const Loaded loaded = load_plan(sources, false, engines.front());
   const Plan& plan = loaded.setup.plan;
+  for (const std::string& engine : engines) check_runs(loaded.scene, plan.arch, engine);
+  const bool text = plan.program != nullptr;
   const Scratch scratch;
   const Input input = write_sources(sources, scratch);
   const CatchFromPython catching;
@@ -122,6 +124,8 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   request.steps = steps.value_or(loaded.scene.steps);
   if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, request.steps);
   if (!leave.empty()) request.frames = {request.steps};
+  std::optional<RunState> last;  // of a rule of text, whose fields no State of a trace has
+  if (text) request.keep = [&](const RunState& frame) { last = frame; };
   std::vector<Trace> traces = unless_interrupted([&] {
     return run_all({input, options, loaded, scratch.path("")}, engines, request);
   });
@@ -158,9 +162,9 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
     result.text += "\nall ended " + reached_text(traces[0]);
   }
   if (!leave.empty() && !traces[0].stop) {
-    const State last = std::move(traces[0].frames.back());
+    if (!text) last = std::move(traces[0].frames.back());
     traces[0].frames.clear();
-    leave_state(leave, head_of(loaded, false, false), last, traces[0]);
+    leave_state(leave, head_of(loaded, text, false), *last, traces[0]);
   }
   return result;
 }

@@ -76,13 +76,13 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
                        std::optional<uint64_t> probe_every, bool anyway)
     : engine_name_(engine), options_(options), sources_(sources) {
   if (!engine.empty()) options.check({engine_row(engine).name}, {});
-  Loaded loaded = load_plan(sources);
+  Loaded loaded = load_plan(sources, false, engine);
   if (engine.empty()) engine_name_ = engine_for(loaded.scene);
   options.check({engine_name_}, {});
   check_runs(loaded.scene, loaded.setup.plan.arch, engine_name_);
-  if (engine_row(engine_name_).here == Here::golden)
+  if (engine_row(engine_name_).here != Here::reference)
     with_places(loaded.scene, loaded.setup.plan.arch,
-                [&] { refuse_rounds(loaded.scene.rule, "a Simulation of golden"); });
+                [&] { refuse_rounds(loaded.scene.rule, "a Simulation of " + engine_name_); });
   check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!anyway) check_size(loaded, engine_name_, options);
   real_ = options.is_real(engine_name_);

@@ -38,6 +38,7 @@ struct Particles {
                                                 // ghosts
   std::array<PaddedArray<double>, 3> v;         // P+G fractional bits
   std::array<PaddedArray<double>, 3> u;         // P+G fractional bits; empty unless the rule has PD
+  std::vector<PaddedArray<double>> fields;      // by number: what a program keeps of a particle besides
   PaddedArray<uint32_t> id;  // empty where a particle's index is its id; else kNoParticle where a block's
                              // last group is not full
   uint32_t id_of(uint32_t index) const { return id.size() == 0 ? index : id[index]; }

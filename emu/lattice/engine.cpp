@@ -8,6 +8,7 @@
 #include "emu/lattice/hash_particles.h"
 #include "emu/lattice/impl.h"
 #include "model/base/error.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 namespace {
@@ -59,6 +60,12 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
   if (!shared()) check_room(count);
   snapshot_.position_frac = plan.rule.widths.position_frac;
   snapshot_.threads = threads_;
+  if (plan.program != nullptr) {
+    if (shared())
+      throw InputError("a rule of text runs on one rank of the lattice engine", "use --threads")
+          .about({"rule.file", "rule"});
+    rounds_.emplace(plan.program->program, rule_);
+  }
   const std::vector<Kernels> here = kernels_here(rule_);
   const auto named = std::find_if(here.begin(), here.end(), [&](const Kernels& k) {
     return options_.simd.empty() || k.name == options_.simd;
@@ -127,7 +134,26 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
     }
     options_.ranks->most({&fastest_, 1});
   }
-  if (options_.quiescence) quiet_.emplace(lattice_, rows_);
+  const int rounds = rounds_ ? static_cast<int>(rounds_->program().rounds.size()) : 1;
+  if (options_.quiescence && !(rounds_ && rounds_->knows_time())) quiet_.emplace(lattice_, rows_, rounds);
+}
+
+void LatticeEngine::Impl::fill_fields(std::span<const int64_t> fields) {
+  const size_t numbers = particles_.fields.size();
+  for_each_index([&](uint32_t p) {
+    for (size_t f = 0; f < numbers; ++f)
+      particles_.fields[f][p] = static_cast<double>(fields[particles_.id_of(p) * numbers + f]);
+  });
+}
+
+std::vector<int64_t> LatticeEngine::Impl::fields() const {
+  const size_t numbers = particles_.fields.size();
+  std::vector<int64_t> fields(numbers * count_);
+  for_each_index([&](uint32_t p) {
+    for (size_t f = 0; f < numbers; ++f)
+      fields[particles_.id_of(p) * numbers + f] = static_cast<int64_t>(particles_.fields[f][p]);
+  });
+  return fields;
 }
 
 Particle LatticeEngine::Impl::particle(uint32_t index) const {
@@ -181,6 +207,7 @@ bool LatticeEngine::Impl::sum_pairs() {
 }
 
 std::vector<Int3> LatticeEngine::Impl::kicks() {
+  if (rounds_) return {};
   if (!summed_) summed_ = sum_pairs();
   if (!summed_) return {};
   std::vector<Int3> all(count_);
@@ -200,9 +227,11 @@ std::vector<Int3> LatticeEngine::Impl::kicks() {
 }
 
 LatticeEngine::LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
-                             const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options)
+                             const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options,
+                             std::span<const int64_t> fields)
     : impl_(std::make_unique<Impl>(plan, step, count, options)) {
   impl_->fill(particle);
+  if (impl_->rounds_) impl_->fill_fields(fields);
 }
 
 LatticeEngine::~LatticeEngine() = default;
@@ -217,7 +246,7 @@ std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_
 
 std::vector<Int3> LatticeEngine::kicks() { return impl_->kicks(); }
 
-State LatticeEngine::state() const { return {impl_->step_, impl_->everyone()}; }
+State LatticeEngine::state() const { return {impl_->step_, impl_->everyone(), impl_->fields()}; }
 
 void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& see) const {
   if (!impl_->shared()) {
@@ -233,6 +262,7 @@ void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& se
 
 uint64_t LatticeEngine::hash() const {
   const Impl& impl = *impl_;
+  if (!impl.particles_.fields.empty()) return hash_of(impl.lattice_, state());
   std::atomic<uint64_t> all = 0;
   for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
     all += hash_particles(impl.particles_, impl.lattice_, impl.members_.cells(), impl.plan_.rule.widths,

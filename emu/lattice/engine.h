@@ -40,11 +40,13 @@ class LatticeEngine {
  public:
   // `particle(k)`, k = 0 ... count-1, is called once each in this order (twice with ranks): no second copy of
   // the state is held. Ids are 0 ... count-1. Particles of one cell take its slots in the order in which they
-  // come (by id at the start of a run; in the order of for_each_slot when a run resumes). `plan` must outlive
-  // the engine. Throws RunError where a cell would hold more than its capacity, InputError where `simd` is
-  // not to be had.
+  // come (by id at the start of a run; in the order of for_each_slot when a run resumes). `fields`: by id,
+  // the numbers that the plan's program keeps of each; the engine then steps that program. `plan` must
+  // outlive the engine. Throws RunError where a cell would hold more than its capacity, InputError where
+  // `simd` is not to be had, or a program not to be run.
   LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
-                const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options);
+                const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options,
+                std::span<const int64_t> fields = {});
   ~LatticeEngine();
   LatticeEngine(const LatticeEngine&) = delete;
   LatticeEngine& operator=(const LatticeEngine&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The parts of the lattice engine: engine.cpp (in and out), step.cpp (one step), lists.cpp (who meets whom),
-// share.cpp (what each rank stores).
+// The parts of the lattice engine: engine.cpp (in and out), step.cpp (one step), program_step.cpp (of a rule
+// that is text), lists.cpp (who meets whom), share.cpp (what each rank stores).
 #pragma once
 
 #include <optional>
@@ -11,6 +11,7 @@
 #include "emu/lattice/pair_list.h"
 #include "emu/lattice/quiet.h"
 #include "emu/lattice/ranks.h"
+#include "emu/lattice/rounds/rounds.h"
 #include "model/base/parallel.h"
 
 namespace cuboct::emu {
@@ -18,6 +19,8 @@ namespace cuboct::emu {
 struct LatticeEngine::Impl {
   Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options);
   void fill(const std::function<Particle(uint32_t)>& particle);
+  void fill_fields(std::span<const int64_t> fields);
+  std::vector<int64_t> fields() const;  // by id
   Particle particle(uint32_t index) const;
   template <typename See>
   void for_each_index(const See& see) const {
@@ -28,6 +31,7 @@ struct LatticeEngine::Impl {
   void for_each_block(const Work& work) {
     for_each_part(blocks_.size(), threads_, [&](size_t b, int) { work(blocks_[b]); });
   }
+  size_t number_of(const Block& block) const { return static_cast<size_t>(&block - blocks_.data()); }
   std::vector<Particle> everyone() const;  // sorted by id; of all ranks, on rank 0
 
   // step.cpp
@@ -40,6 +44,11 @@ struct LatticeEngine::Impl {
   RunError error(Fault fault, uint32_t cell, uint32_t id, int64_t number) const;
   void fail_if_any(std::vector<RunError> faults) const;
   void fail_if_any(std::vector<Found> Block::*faults) const;
+
+  // program_step.cpp
+  void run_rounds(const Active& active);
+  void keep_fields();
+  [[noreturn]] void fail_as_golden() const;
 
   // lists.cpp
   void refresh_lists();
@@ -71,7 +80,9 @@ struct LatticeEngine::Impl {
   LatticeOptions options_;
   KernelRule rule_;
   Kernels kernels_;
-  double cutoff_;  // cells
+  std::optional<Rounds> rounds_;                    // of a program; else the kernels step the pair law
+  std::vector<PaddedArray<double>> fields_before_;  // as the step found them
+  double cutoff_;                                   // cells
   int threads_;
   uint64_t step_;
   uint32_t count_;       // particles of all ranks

@@ -112,9 +112,10 @@ void CellSet::dilate(const CellSet& other, const Lattice& lattice, const Rows& r
   xy.clear(rows);
 }
 
-Quiet::Quiet(const Lattice& lattice, const Rows& rows)
+Quiet::Quiet(const Lattice& lattice, const Rows& rows, int rounds)
     : lattice_(&lattice),
       rows_(&rows),
+      rounds_(rounds),
       changed_(lattice, rows),
       awake_(lattice, rows),
       near_(lattice, rows),
@@ -131,6 +132,10 @@ Active Quiet::next() {
     return {nullptr, nullptr, telling_ ? changed_.flags() : nullptr};
   }
   awake_.dilate(changed_, *lattice_, *rows_);
+  for (int k = 1; k < rounds_; ++k) {
+    spare_ = awake_;
+    awake_.dilate(spare_, *lattice_, *rows_);
+  }
   changed_.clear(*rows_);
   const uint64_t awake = awake_.count(*rows_);
   quiet_cells_ = lattice_->size() - awake;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Which cells need work: those in whose neighbourhood something changed in the step before.
 //
-// A step is a function of a particle and its neighbours. Where neither changed a bit, the step changes
-// nothing again, so it need not be taken: exact in integers.
+// A step is a function of a particle and its neighbours; of several rounds, of their neighbours too. Where
+// none of them changed a bit, the step changes nothing again, so it need not be taken: exact in integers.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,8 @@ class CellSet {
 class Quiet {
  public:
   Quiet() = default;
-  Quiet(const Lattice& lattice, const Rows& rows);
+  // `rounds` of a step: through so many cells a change is seen in one.
+  Quiet(const Lattice& lattice, const Rows& rows, int rounds = 1);
 
   // What the next step has to look at; valid until the next call.
   Active next();
@@ -69,6 +70,7 @@ class Quiet {
  private:
   const Lattice* lattice_ = nullptr;
   const Rows* rows_ = nullptr;
+  int rounds_ = 1;
   bool told_ = false;     // the changes of the step before are known
   bool telling_ = false;  // those of this step will be
   int pause_ = 0;         // steps for which nothing is told apart

@@ -128,6 +128,41 @@ Counters Runner::counters() {
   return counters;
 }
 
+// A rule that is text.
+class IntegerRunner : public IntegerEngine {
+ public:
+  IntegerRunner(const Plan& plan, const State& from, const LatticeOptions& options)
+      : engine_(
+            plan, from.step, static_cast<uint32_t>(from.particles.size()),
+            [&](uint32_t k) { return from.particles[k]; }, options, by_id(from)) {}
+
+  void step() override { engine_.step(); }
+  State state() const override { return engine_.state(); }
+  uint64_t hash() const override { return engine_.hash(); }
+  void for_each_slot(const std::function<void(const Particle&)>& see) const override {
+    engine_.for_each_slot(see);
+  }
+  Counters counters() const override {
+    const LatticeCounters& counts = engine_.counters();
+    return {{"list_builds", static_cast<double>(counts.list_builds)},
+            {"node_steps", static_cast<double>(counts.node_steps)},
+            {"quiet_node_steps", static_cast<double>(counts.quiet_node_steps)},
+            {"threads", engine_.threads()}};
+  }
+
+ private:
+  static std::vector<int64_t> by_id(const State& state) {
+    std::vector<int64_t> fields(state.fields.size());
+    const size_t numbers = fields.size() / std::max<size_t>(1, state.particles.size());
+    for (size_t k = 0; k < state.particles.size(); ++k)
+      std::copy_n(state.fields.begin() + static_cast<ptrdiff_t>(k * numbers), numbers,
+                  fields.begin() + static_cast<ptrdiff_t>(state.particles[k].id * numbers));
+    return fields;
+  }
+
+  LatticeEngine engine_;
+};
+
 }  // namespace
 
 EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoice& choice) {
@@ -135,6 +170,16 @@ EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoic
   kind.threads = readers(choice.engine);
   kind.keeps_state = false;
   kind.saves = true;
+  if (plan.program != nullptr) {
+    kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool cycles) {
+      if (cycles)
+        throw InputError("the timing model counts no cycles of a rule of text").about({"rule.file", "rule"});
+      return integer_run(scene, plan, from, [&](const State& state) {
+        return std::make_unique<IntegerRunner>(plan, state, choice.engine);
+      });
+    };
+    return kind;
+  }
   kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool cycles) {
     return std::make_unique<Runner>(scene, plan, choice, from, cycles);
   };

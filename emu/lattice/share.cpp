@@ -49,6 +49,13 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
     for (auto& u : particles_.u) u = PaddedArray<double>(room);
   if (shared()) particles_.id = PaddedArray<uint32_t>(room, kNoParticle);
   particles_.type = PaddedArray<uint8_t>(room);
+  if (rounds_) {
+    const auto numbers = static_cast<size_t>(rounds_->program().numbers());
+    particles_.fields.clear();
+    fields_before_.clear();
+    for (size_t f = 0; f < numbers; ++f)
+      particles_.fields.emplace_back(room), fields_before_.emplace_back(room);
+  }
   snapshot_.room = room;
 }
 
@@ -99,6 +106,7 @@ void LatticeEngine::Impl::store_by_cell() {
     reorder(particles_.v[a]);
     if (plan_.rule.pd) reorder(particles_.u[a]);
   }
+  for (auto& field : particles_.fields) reorder(field);
   if (particles_.id.size() == 0) {
     particles_.id = PaddedArray<uint32_t>(stored_, kNoParticle);
     std::iota(particles_.id.data(), particles_.id.data() + count_, 0u);

@@ -95,7 +95,9 @@ void LatticeEngine::Impl::step() {
   Active active;
   if (quiet_) active = quiet_->next();
   clear_blocks();
-  if (std::exchange(summed_, false))
+  if (rounds_)
+    run_rounds(active);
+  else if (std::exchange(summed_, false))
     for_each_block([&](Block& block) { kernels_.update(rule_, particles_, active, sums_.data(), block); });
   else
     forces_and_update(active);

@@ -32,6 +32,22 @@ constexpr Int wrapped(Int a, int bits) {
   return static_cast<Int>(wrap(static_cast<int64_t>(a), bits));
 }
 
+// msb, align and shift of a value.
+template <class Int>
+constexpr int leading(Int a) {
+  return a <= 0 ? -1 : leading_bit(static_cast<uint64_t>(a));
+}
+template <class Int>
+constexpr Int aligned(Int a, int place, int step) {
+  if (a <= 0) return 0;
+  const int by = place - leading(a) / step * step;
+  return by >= 0 ? a << by : a >> -by;
+}
+template <class Int>
+constexpr Int shifted(Int a, int by) {
+  return by >= 0 ? a << by : rounded_odd(a, -by);
+}
+
 inline int64_t noise_of(int64_t seed, int64_t a, int64_t b, int64_t c, int width) {
   const uint64_t mixed = Hash().add(seed).add(std::min(a, b)).add(std::max(a, b)).add(c).value();
   return static_cast<int64_t>(mixed) >> (64 - width);
@@ -178,14 +194,6 @@ class Block {
     else if (fault < own->fault)
       *own = {lane, fault, number};
   }
-
-  static int leading(Int a) { return a <= 0 ? -1 : leading_bit(static_cast<uint64_t>(a)); }
-  static Int aligned(Int a, int place, int step) {
-    if (a <= 0) return 0;
-    const int by = place - leading(a) / step * step;
-    return by >= 0 ? a << by : a >> -by;
-  }
-  static Int shifted(Int a, int by) { return by >= 0 ? a << by : rounded_odd(a, -by); }
 
   const Graph& graph_;
   size_t lanes_;

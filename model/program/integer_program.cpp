@@ -22,7 +22,7 @@ using Source = RealSource;
 
 constexpr int kFieldBits = 46;    // of a field that goes on
 constexpr int kSumBits = 50;      // of a sum
-constexpr double kSteepest = 32;  // a table begins where its function is so many times what it is further out
+constexpr double kSteepest = 512; // a table begins where its function is so many times what it is further out
 constexpr double kFurther = 0.55;  // of the reach
 constexpr double kNearest = 1.0 / 64;
 

@@ -63,8 +63,12 @@ void write_checkpoint(const std::string& path, const CheckpointHead& head, Engin
     out->word(head.engine.own.size());
     out->words(head.engine.own);
   });
-  engine.for_each_slot([&](const Particle& p) { attempt([&] { put(*out, p, displaced); }); });
-  if (const Body* body = engine.saved_body())
+  bool slots = false;
+  engine.for_each_slot([&](const Particle& p) {
+    slots = true;
+    attempt([&] { put(*out, p, displaced); });
+  });
+  if (const Body* body = slots ? nullptr : engine.saved_body())
     attempt([&] {
       put(*out, body->x, body->v, body->u);
       const std::vector<uint64_t> kept = body->bonds ? body->bonds->kept : std::vector<uint64_t>();

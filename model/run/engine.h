@@ -57,6 +57,8 @@ class Engine {
   virtual uint64_t hash() = 0;  // of fixed engines
   // With `forces`, a frame in real numbers holds the pair forces.
   virtual RunState frame(bool forces) = 0;
+  // The same in integers, of an engine that holds them and shows real numbers.
+  virtual RunState integers() { return frame(false); }
   virtual Reading read(const Asked& asked) = 0;
   virtual Momentum momentum() = 0;
   // Cells per step, along an axis: over the states that were looked at, or over all.

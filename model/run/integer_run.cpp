@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "model/base/error.h"
 #include "model/program/program_rule.h"
 #include "model/real/real_engine.h"
 
@@ -36,34 +37,57 @@ State state_with_fields(const Scene& scene, const Body& body, const ProgramSetti
   return state;
 }
 
+std::unique_ptr<IntegerEngine> made(const ProgramSetting& setting, const State& state,
+                                    const MakeIntegerEngine& make) {
+  if (make) return make(state);
+  return std::make_unique<GoldenIntegers>(setting.program.program, setting.lattice, setting.capacity, state);
+}
+
 }  // namespace
 
-IntegerRun::IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step)
+IntegerRun::IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step,
+                       const MakeIntegerEngine& make)
     : RoundsRun(scene, body, {}, setting.fixed.cell_edge, step),
       setting_(setting),
-      golden_(setting.program.program, setting.lattice, setting.capacity,
-              state_with_fields(scene, body_, setting, step)) {
+      program_(made(setting, state_with_fields(scene, body_, setting, step), make)) {
   stale_ = true;
+}
+
+IntegerRun::IntegerRun(const Scene& scene, const ProgramSetting& setting, const State& from,
+                       const MakeIntegerEngine& make)
+    : RoundsRun(scene, scene.body, {}, setting.fixed.cell_edge, from.step),
+      setting_(setting),
+      program_(made(setting, from, make)) {
+  stale_ = true;
+}
+
+State state_of_checkpoint(State particles, const graph::FixedProgram& program,
+                          const std::vector<uint64_t>& memory) {
+  const auto numbers = static_cast<size_t>(program.numbers());
+  if (memory.size() != numbers * particles.particles.size())
+    throw InputError("the checkpoint does not hold the fields of this rule");
+  for (const Particle& particle : particles.particles)
+    for (size_t f = 0; f < numbers; ++f)
+      particles.fields.push_back(static_cast<int64_t>(memory[particle.id * numbers + f]));
+  return particles;
 }
 
 void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   for (; steps > 0; --steps) {
-    golden_.step();
-    step_ = golden_.step_count();
+    program_->step();
+    ++step_;
     stale_ = true;
     if (hashes != nullptr) hashes->push_back(hash());
   }
 }
 
-uint64_t IntegerRun::hash() { return hash_of(setting_.lattice, golden_.state()); }
-
 Momentum IntegerRun::momentum() {
-  return {cuboct::momentum(setting_.fixed, golden_.state()), RoundsRun::momentum().real};
+  return {cuboct::momentum(setting_.fixed, program_->state()), RoundsRun::momentum().real};
 }
 
 // Places, velocities and what the rule keeps of each particle, as its terms in doubles take them.
 void IntegerRun::renew() {
-  const State state = golden_.state();
+  const State state = program_->state();
   body_ = with_bonds(scene_.rule, to_real(state, setting_.fixed, setting_.lattice, setting_.origin), body_);
   const IntegerProgram& program = setting_.program;
   const auto numbers = static_cast<size_t>(program.program.numbers());
@@ -81,7 +105,7 @@ void IntegerRun::renew() {
   engine_->recall(kept);
 }
 
-Counters IntegerRun::counters() { return {}; }
+Counters IntegerRun::counters() { return program_->counters(); }
 
 Notes IntegerRun::notes() { return {{"rule", rounds_of(scene_.rule)->declaration().name}}; }
 

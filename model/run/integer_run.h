@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A rule that is text, in integers: golden steps it, and its terms in doubles tell forces, energies and
-// fields of the states that are looked at.
+// A rule that is text, in integers: an engine of programs steps it, and its terms in doubles tell forces,
+// energies and fields of the states that are looked at.
 #pragma once
 
-#include "model/contract/golden.h"
 #include "model/program/integer_program.h"
+#include "model/run/integer_engine.h"
 #include "model/run/rounds_run.h"
 
 namespace cuboct {
@@ -20,21 +20,38 @@ struct ProgramSetting {
 
 class IntegerRun final : public RoundsRun {
  public:
-  // Throws as Golden does. `step`: of `body`, which has what the rule's fields kept.
-  IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step = 0);
+  // Golden, where `make` is empty. Throws as that does. `step`: of `body`, which has what the rule's fields
+  // kept.
+  IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step = 0,
+             const MakeIntegerEngine& make = {});
+  // Goes on from a state as for_each_slot and memory() left it.
+  IntegerRun(const Scene& scene, const ProgramSetting& setting, const State& from,
+             const MakeIntegerEngine& make = {});
 
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override;
-  uint64_t hash() override;
+  uint64_t hash() override { return program_->hash(); }
   Momentum momentum() override;
   Counters counters() override;
   Notes notes() override;
+  RunState integers() override { return program_->state(); }
+  void for_each_slot(const std::function<void(const Particle&)>& see) override {
+    program_->for_each_slot(see);
+  }
+  // The fields of all particles by id.
+  EngineMemory memory() override { return {{}, whole(program_->state().fields)}; }
 
  private:
   void renew() override;
-  State state_of(const Body& body) const;
+  static std::vector<uint64_t> whole(const std::vector<int64_t>& numbers) {
+    return {numbers.begin(), numbers.end()};
+  }
 
   ProgramSetting setting_;
-  Golden golden_;
+  std::unique_ptr<IntegerEngine> program_;
 };
+
+// The state that a checkpoint holds: `particles` in the order of their slots, `memory` as IntegerRun left it.
+State state_of_checkpoint(State particles, const graph::FixedProgram& program,
+                          const std::vector<uint64_t>& memory);
 
 }  // namespace cuboct

@@ -251,7 +251,7 @@ void Loop::measure(bool look, bool add) {
 }
 
 void Loop::keep() {
-  RunState frame = engine_->frame(request_.forces);
+  RunState frame = request_.integers ? engine_->integers() : engine_->frame(request_.forces);
   if (!leads()) return;
   journal([&](Journal& to) { to.frame(frame); });
   give(request_, std::move(frame), trace_);

@@ -38,6 +38,7 @@ struct RunRequest {
   bool energies = false;  // read with the probes, and at the last state
   bool watch = false;     // look for what fails wherever energies are read (model/analysis/watch.h)
   bool cycles = false;    // keep phase times, where the engine has them
+  bool integers = false;  // frames are those of Engine::integers
   bool forces = false;    // frames in real numbers hold the pair forces
   bool totals = false;    // Recorded::momentum_change and largest_speed
   bool until = false;     // end where the scene's `until` holds

@@ -173,6 +173,10 @@ std::optional<Mismatch> compare(const State& a, const State& b) {
     if (auto m = triple("x", pa->x, pb->x)) return m;
     if (auto m = triple("v", pa->v, pb->v)) return m;
     if (auto m = triple("u", pa->u, pb->u)) return m;
+    const size_t numbers = a.fields.size() / a.particles.size();
+    for (size_t f = i * numbers; f < std::min((i + 1) * numbers, b.fields.size()); ++f)
+      if (a.fields[f] != b.fields[f])
+        return differ(fmt::format("number {} of its fields", f - i * numbers), a.fields[f], b.fields[f]);
   }
   return std::nullopt;
 }

@@ -41,7 +41,8 @@ struct Mismatch {
 // of steps, stop reasons, cycles step by step (only where both engines count them).
 std::optional<Mismatch> compare(const Trace& a, const Trace& b);
 
-// Particle by particle in the order of ids, field by field: missing, type, cell, x, v, u.
+// Particle by particle in the order of ids, field by field: missing, type, cell, x, v, u, and what a program
+// keeps besides.
 std::optional<Mismatch> compare(const State& a, const State& b);
 
 // The frame of that step; null where the trace has none.

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+
+#include "emu/lattice/impl.h"
+#include "model/contract/golden.h"
+
+namespace cuboct::emu {
+
+void LatticeEngine::Impl::keep_fields() {
+  for (size_t f = 0; f < particles_.fields.size(); ++f)
+    for_each_block([&](Block& block) {
+      std::copy(particles_.fields[f].data() + block.begin, particles_.fields[f].data() + block.end,
+                fields_before_[f].data() + block.begin);
+    });
+}
+
+// No particle moves before every round is done, so a fault finds the state as the step did, but for fields.
+void LatticeEngine::Impl::run_rounds(const Active& active) {
+  keep_fields();
+  std::atomic<bool> fits = true;
+  const auto all = [&](const auto& work) {
+    for_each_block([&](Block& block) {
+      if (!work(block)) fits = false;
+    });
+    if (!fits) fail_as_golden();
+  };
+  for (size_t k = 0; k < rounds_->program().rounds.size(); ++k) {
+    all([&](Block& block) { return rounds_->meet(k, number_of(block), block, particles_, active, step_); });
+    all([&](Block& block) { return rounds_->finish(k, number_of(block), block, particles_, active, step_); });
+  }
+  for_each_block([&](Block& block) { rounds_->move(block, particles_, active); });
+}
+
+// Golden takes the same step, and says what does not fit.
+void LatticeEngine::Impl::fail_as_golden() const {
+  State begin{step_, {}};
+  for (uint32_t n = 0; n < lattice_.size(); ++n)
+    members_.for_each(n, [&](uint32_t id) {
+      begin.particles.push_back(particle(index_(id)));
+      for (const auto& field : fields_before_)
+        begin.fields.push_back(static_cast<int64_t>(field[index_(id)]));
+    });
+  Golden(rounds_->program(), lattice_, plan_.arch.capacity, begin).step();
+  throw std::logic_error("the lattice engine finds a fault that golden does not");
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "emu/lattice/rounds/rounds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/base/error.h"
+
+namespace cuboct::emu {
+namespace {
+
+void check_doubles(const graph::Graph& graph, const std::string& what) {
+  const graph::Exactness exactness = graph::exactness_of(graph);
+  if (exactness.doubles) return;
+  throw InputError(fmt::format("{}: '{}' needs more bits than the vectors of the lattice engine hold", what,
+                               label(graph, exactness.worst)),
+                   "engine golden runs it")
+      .about({"rule.file", "rule"});
+}
+
+}  // namespace
+
+Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule)
+    : program_(program), rule_(rule), once_(std::ranges::all_of(program.rounds, PairPass::is_mutual)) {
+  for (const graph::Round& round : program.rounds) {
+    check_doubles(round.pair, "a pair of " + round.name);
+    check_doubles(round.finish, "the finish of " + round.name);
+  }
+}
+
+bool Rounds::knows_time() const {
+  const auto reads_it = [](const graph::Graph& graph) {
+    return std::ranges::any_of(graph.nodes, [](const graph::Node& node) {
+      return node.op == graph::Op::input && node.source == graph::Source::step;
+    });
+  };
+  return std::ranges::any_of(program_.rounds, [&](const graph::Round& round) {
+    return reads_it(round.pair) || reads_it(round.finish);
+  });
+}
+
+void Rounds::cut(size_t blocks, size_t room) {
+  parts_.resize(blocks);
+  for (Part& part : parts_) {
+    if (!part.pairs.empty()) continue;
+    for (const graph::Round& round : program_.rounds) {
+      part.pairs.push_back(std::make_unique<PairPass>(program_, round, once_));
+      part.finishes.push_back(std::make_unique<FinishPass>(program_, round, rule_));
+    }
+  }
+  sums_.clear();
+  for (const graph::Round& round : program_.rounds) {
+    auto& sums = sums_.emplace_back();
+    for (const graph::Sum& sum : round.sums)
+      for (size_t n = 0; n < sum.terms.size(); ++n) sums.emplace_back(room);
+  }
+  for (auto* arrays : {&moves_.v, &moves_.drift})
+    for (auto& array : *arrays) array = PaddedArray<double>(room);
+  if (!program_.motion.u.empty())
+    for (auto& array : moves_.u) array = PaddedArray<double>(room);
+}
+
+void Rounds::build(size_t b, const Block& block, const Particles& particles, Search search) {
+  parts_[b].list.build(block, particles, program_.position_frac, once_, std::move(search));
+}
+
+void Rounds::prune(size_t b, const Block& block, const Particles& particles, double reach) {
+  parts_[b].list.prune(block, particles, reach);
+}
+
+bool Rounds::meet(size_t k, size_t b, const Block& block, const Particles& particles, const Active& active,
+                  uint64_t step) {
+  return parts_[b].pairs[k]->run(particles, parts_[b].list, block, once_ ? active.near : active.awake, step,
+                                 sums_[k]);
+}
+
+bool Rounds::finish(size_t k, size_t b, const Block& block, Particles& particles, const Active& active,
+                    uint64_t step) {
+  return parts_[b].finishes[k]->run(particles, block, active, step, sums_[k], moves_);
+}
+
+void Rounds::move(Block& block, Particles& particles, const Active& active) {
+  for (uint32_t p = block.begin; p < block.end; ++p) {
+    if (active.awake != nullptr && active.awake[particles.cell[p]] == 0) continue;
+    Crossing crossing{p, {}};
+    double speed2 = 0;
+    if (move(particles, p, crossing, speed2) && active.changed != nullptr) active.mark(particles.cell[p]);
+    block.fastest2 = std::max(block.fastest2, speed2);
+    if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
+  }
+}
+
+// Whether something changed.
+bool Rounds::move(Particles& particles, uint32_t p, Crossing& crossing, double& speed2) const {
+  bool changed = false;
+  for (size_t a = 0; a < program_.motion.v.size(); ++a) {
+    const double before = particles.x[a][p], v = moves_.v[a][p];
+    // The drift is exact: what the residue and the drift make together of visible units goes to x.
+    const double exact = particles.residue[a][p] + moves_.drift[a][p];
+    const double whole = std::floor(exact * rule_.inverse_guard);
+    const double after = before + whole;
+    const auto residue = static_cast<int32_t>(exact - whole * rule_.guard);
+    changed |= after != before || residue != particles.residue[a][p] || v != particles.v[a][p];
+    crossing.away[a] =
+        static_cast<int8_t>(std::floor(after * rule_.inverse_cell) - std::floor(before * rule_.inverse_cell));
+    particles.x[a][p] = after;
+    particles.residue[a][p] = residue;
+    particles.v[a][p] = v;
+    if (particles.u[0].size() > 0) {
+      const double u = program_.motion.u.empty() ? 0 : moves_.u[a][p];
+      changed |= particles.u[a][p] != u;
+      particles.u[a][p] = u;
+    }
+    speed2 += v * v;
+  }
+  return changed;
+}
+
+}  // namespace cuboct::emu

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// An engine of any program of integers, as IntegerRun steps it. All hold golden's bits.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "model/contract/golden.h"
+#include "model/run/engine.h"
+
+namespace cuboct {
+
+class IntegerEngine {
+ public:
+  virtual ~IntegerEngine() = default;
+  // Throws RunError, the same as golden's.
+  virtual void step() = 0;
+  virtual State state() const = 0;  // sorted by id
+  virtual uint64_t hash() const = 0;
+  // Particles by cell, then slot.
+  virtual void for_each_slot(const std::function<void(const Particle&)>& see) const = 0;
+  virtual Counters counters() const { return {}; }
+};
+
+// From a state whose particles take the slots of their cells in its order, with their fields in the same.
+using MakeIntegerEngine = std::function<std::unique_ptr<IntegerEngine>(const State&)>;
+
+class GoldenIntegers final : public IntegerEngine {
+ public:
+  GoldenIntegers(const graph::FixedProgram& program, const Lattice& lattice, int capacity,
+                 const State& initial)
+      : lattice_(lattice), golden_(program, lattice, capacity, initial) {}
+
+  void step() override { golden_.step(); }
+  State state() const override { return golden_.state(); }
+  uint64_t hash() const override { return hash_of(lattice_, golden_.state()); }
+  void for_each_slot(const std::function<void(const Particle&)>& see) const override {
+    for (const auto& cell : golden_.cells())
+      for (const Particle& particle : cell) see(particle);
+  }
+
+ private:
+  const Lattice& lattice_;
+  Golden golden_;
+};
+
+}  // namespace cuboct
