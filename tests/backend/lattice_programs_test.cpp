@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Programs on the lattice engine: the pair law as a program beside golden, on every case.
+#include <gtest/gtest.h>
+
+#include "model/contract/pair_program.h"
+#include "model/program/integer_program.h"
+#include "tests/backend/against_golden.h"
+
+namespace cuboct::test {
+namespace {
+
+Case as_program(Case c) {
+  Plan& plan = c.setup.plan;
+  auto program = std::make_shared<IntegerProgram>();
+  FixedRule rule = plan.rule;
+  rule.axes = 3;  // golden moves along z in flat scenes too
+  program->program = pair_program(rule, plan.arch.capacity);
+  plan.program = std::move(program);
+  return c;
+}
+
+// Threads and quiescence; there is one vector unit, the widest.
+std::vector<emu::LatticeOptions> program_variants() {
+  std::vector<emu::LatticeOptions> all;
+  for (const int threads : {1, 2, 3, 5})
+    for (const bool quiescence : {false, true}) all.push_back({threads, quiescence, ""});
+  return all;
+}
+
+// Formats wider than doubles are for other engines.
+bool vectors_hold(const Case& c, Count& count) {
+  try {
+    const emu::LatticeEngine engine(c.setup.plan, 0, 0, {}, {});
+    return true;
+  } catch (const InputError&) {
+    ++count.vectors;
+    return false;
+  }
+}
+
+class LatticeProgram : public testing::TestWithParam<std::string> {};
+
+TEST_P(LatticeProgram, EqualsGoldenAtEachStep) {
+  const Case c = as_program(make_case(GetParam()));
+  Count count;
+  if (!vectors_hold(c, count)) GTEST_SKIP() << "formats wider than doubles";
+  for (const emu::LatticeOptions& v : {program_variants()[0], program_variants()[5]}) compare(c, v, count);
+  EXPECT_GT(count.updates, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, LatticeProgram, testing::ValuesIn(case_names()),
+                         [](const auto& p) { return p.param; });
+
+TEST(LatticeProgramRandom, EqualsGolden) {
+  Count count, wide;
+  const std::vector<emu::LatticeOptions> all = program_variants();
+  for (uint64_t seed = 1; seed <= 150; ++seed) {
+    const Case c = as_program(random_case(seed));
+    if (!vectors_hold(c, wide)) continue;
+    compare(c, all[seed % all.size()], count);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_LT(wide.vectors, 50u);
+  EXPECT_GT(count.updates, 20000u);
+  EXPECT_GT(count.moves, 100u);
+  EXPECT_GT(count.lists.quiet_node_steps, 0u);
+}
+
+TEST(LatticeProgramFaults, EachArisesAsInGolden) {
+  Count count, wide;
+  size_t expected = 0;
+  for (const Fault fault : all_faults()) {
+    const Case c = as_program(fault_case(fault));
+    if (!vectors_hold(c, wide)) continue;
+    for (const emu::LatticeOptions& v : program_variants()) compare(c, v, count), ++expected;
+  }
+  EXPECT_GT(expected, 8 * all_faults().size() / 2);
+  EXPECT_EQ(count.faults, expected);
+}
+
+}  // namespace
+}  // namespace cuboct::test
