@@ -33,7 +33,7 @@ std::string explain(const SharedRun& run, const std::string& engine_a, const std
                     uint64_t step) {
   RunRequest request;
   request.steps = step;
-  request.integers = true;
+  request.integers = run.loaded.setup.plan.program != nullptr;
   if (step > 0) request.frames.push_back(step - 1);
   request.frames.push_back(step);
   const std::vector<Trace> again = run_all(run, {engine_a, engine_b}, request);

@@ -96,7 +96,7 @@ class GpuProgram : public EngineProgram {
   GpuProgram() {
     name = "cuboct-gpu";
     description = "Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers";
-    abilities.forces = abilities.checkpoints = true;
+    abilities.forces = abilities.checkpoints = abilities.text = true;
   }
 
   void add_options(Command& app) override {
@@ -166,6 +166,9 @@ bool GpuProgram::prepare(ProgramOptions& options) {
 }
 
 EngineKind GpuProgram::kind(Scene& scene, const Plan& plan, const ProgramOptions&) {
+  if (plan.program != nullptr && precision_ != "fixed")
+    throw InputError(fmt::format("--precision {}: a rule of text runs in integers on a GPU", precision_),
+                     "engine reference has it in doubles");
   if (joules_) {
     meter_.emplace(found_, plan.particles);
     choice_.hooks = meter_->hooks();

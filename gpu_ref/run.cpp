@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "gpu_ref/rounds_engine.h"
 #include "hw/engine_kind.h"
 
 namespace cuboct::gpu {
@@ -196,6 +197,16 @@ cuboct::Counters Runner::counters() {
   return counters;
 }
 
+// A rule that is text.
+std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan, const GpuChoice& choice,
+                                            CheckpointReader* from) {
+  auto run = integer_run(scene, plan, from, [&](const State& state) {
+    return make_rounds_engine(plan, state, choice.engine);
+  });
+  if (choice.hooks.ready) choice.hooks.ready();
+  return run;
+}
+
 }  // namespace
 
 EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choice) {
@@ -208,6 +219,12 @@ EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choic
     return looks_of(probes, particles);
   };
   kind.saves = true;
+  if (plan.program != nullptr) {
+    kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) {
+      return run_of_text(scene, plan, choice, from);
+    };
+    return kind;
+  }
   kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) {
     return std::make_unique<Runner>(scene, plan, choice, from);
   };

@@ -16,9 +16,10 @@ const std::vector<EngineRow>& engines() {
   const char* kNeverStands =
       "its nodes are never all at the same step: a node begins one while others end the last";
   static const std::vector<EngineRow> rows{
-      {.name = "golden", .here = Here::golden, .cost = {40e-9, 0, false, 600, 10, 100}},
+      {.name = "golden", .here = Here::golden, .text = true, .cost = {40e-9, 0, false, 600, 10, 100}},
       {.name = "lattice",
        .here = Here::lattice,
+       .text = true,
        .studied = true,
        .counts_if_asked = true,
        .hash_every = 100,
@@ -45,6 +46,7 @@ const std::vector<EngineRow>& engines() {
        .needs = "install zlib1g-dev and build again",
        .cost = {0, 0, false, 600, 0, 70}},
       {.name = "gpu",
+       .text = true,
        .real = true,
        .studied = true,
        .devices = true,

@@ -23,6 +23,7 @@ struct EngineRow {
   std::string name;
   Here here = Here::none;
   bool bits = true;              // holds those of the fixed rule
+  bool text = false;             // runs rules that are text, in integers
   bool real = false;             // computes in real numbers, if told to or always
   bool integrators = false;      // has several
   bool studied = false;          // by `cuboct explore`

@@ -18,12 +18,14 @@ namespace cuboct {
 
 namespace {
 
-// Golden and lattice run a rule that is text in integers.
-bool runs_text(const Scene& scene, const std::string& engine) {
+bool is_text(const Scene& scene) {
   const RoundsRule* rounds = rounds_of(scene.rule);
+  return rounds != nullptr && rounds->text() != nullptr;
+}
+
+bool runs_text(const Scene& scene, const std::string& engine) {
   const EngineRow* row = find_engine(engine);
-  return rounds != nullptr && rounds->text() != nullptr && row != nullptr &&
-         (row->here == Here::golden || row->here == Here::lattice);
+  return is_text(scene) && row != nullptr && row->text;
 }
 
 }  // namespace
@@ -59,7 +61,7 @@ Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std:
 }
 
 std::vector<std::string> engines_to_cross(const Scene& scene) {
-  if (runs_text(scene, "lattice")) return {"golden", "lattice"};
+  if (is_text(scene)) return {"golden", "lattice"};
   return {"golden", "lattice", "systemc", "rtl"};
 }
 

@@ -136,7 +136,13 @@ class IntegerRunner : public IntegerEngine {
             plan, from.step, static_cast<uint32_t>(from.particles.size()),
             [&](uint32_t k) { return from.particles[k]; }, options, by_id(from)) {}
 
-  void step() override { engine_.step(); }
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    for (; steps > 0; --steps) {
+      engine_.step();
+      if (hashes != nullptr) hashes->push_back(engine_.hash());
+    }
+  }
+  uint64_t step_count() const override { return engine_.step_count(); }
   State state() const override { return engine_.state(); }
   uint64_t hash() const override { return engine_.hash(); }
   void for_each_slot(const std::function<void(const Particle&)>& see) const override {

@@ -17,6 +17,7 @@
 #include "model/base/output.h"
 #include "model/base/steps.h"
 #include "model/base/text.h"
+#include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
 #include "model/trace/trace_file.h"
 
@@ -80,7 +81,9 @@ int tell(EngineProgram& program, const Parsed& parsed, const Scene& scene, const
 int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& arch) {
   ProgramOptions& options = parsed.options;
   const bool leads = program.leads();
-  const Plan plan = plan_of(scene, arch);
+  const RoundsRule* rounds = rounds_of(scene.rule);
+  const bool text = program.abilities.text && rounds != nullptr && rounds->text() != nullptr;
+  const Plan plan = text ? program_plan_of(scene, arch) : plan_of(scene, arch);
   settle(program, parsed, scene);
 
   std::optional<TraceWriter> writer;
@@ -167,6 +170,8 @@ void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
       .show_default()
       .given(options.hashes_given);
   if (can.cycles) app.flag("--cycles", run.cycles, "Count the machine's cycles with the timing model");
+  if (can.text)
+    app.flag("--integers", run.integers, "Frames of a rule of text hold its integers, for comparisons");
   if (can.forces) app.flag("--forces", run.forces, "Frames in real numbers hold the pair forces too");
   if (can.checkpoints) {
     app.option("--checkpoint", run.checkpoint.path, "File that the run can go on from; gone when it ends");
@@ -260,6 +265,7 @@ std::vector<std::string> program_arguments(const std::string& scene, const std::
   add(request.until, {"--until"});
   add(request.cycles, {"--cycles"});
   add(request.forces, {"--forces"});
+  add(request.integers, {"--integers"});
   add(!checkpoint.path.empty(), {"--checkpoint", checkpoint.path});
   add(checkpoint.every_steps > 0, {"--checkpoint-every", fmt::format("{} steps", checkpoint.every_steps)});
   add(checkpoint.every_seconds > 0, {"--checkpoint-every", fmt::format("{} s", checkpoint.every_seconds)});

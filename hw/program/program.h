@@ -29,6 +29,7 @@ struct ProgramAbilities {
   bool always_cycles = false;
   bool forces = false;          // --forces
   bool checkpoints = false;     // --checkpoint, --checkpoint-every, --resume
+  bool text = false;            // rules that are text
   uint64_t steps = UINT64_MAX;  // that a machine can count
 };
 

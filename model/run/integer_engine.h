@@ -13,8 +13,9 @@ namespace cuboct {
 class IntegerEngine {
  public:
   virtual ~IntegerEngine() = default;
-  // Throws RunError, the same as golden's.
-  virtual void step() = 0;
+  // As Engine::advance: throws RunError, the same as golden's.
+  virtual void advance(uint64_t steps, std::vector<uint64_t>* hashes) = 0;
+  virtual uint64_t step_count() const = 0;
   virtual State state() const = 0;  // sorted by id
   virtual uint64_t hash() const = 0;
   // Particles by cell, then slot.
@@ -31,7 +32,13 @@ class GoldenIntegers final : public IntegerEngine {
                  const State& initial)
       : lattice_(lattice), golden_(program, lattice, capacity, initial) {}
 
-  void step() override { golden_.step(); }
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    for (; steps > 0; --steps) {
+      golden_.step();
+      if (hashes != nullptr) hashes->push_back(hash());
+    }
+  }
+  uint64_t step_count() const override { return golden_.step_count(); }
   State state() const override { return golden_.state(); }
   uint64_t hash() const override { return hash_of(lattice_, golden_.state()); }
   void for_each_slot(const std::function<void(const Particle&)>& see) const override {

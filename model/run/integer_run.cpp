@@ -73,12 +73,17 @@ State state_of_checkpoint(State particles, const graph::FixedProgram& program,
 }
 
 void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
-  for (; steps > 0; --steps) {
-    program_->step();
-    ++step_;
+  const auto look = [&] {
+    step_ = program_->step_count();
     stale_ = true;
-    if (hashes != nullptr) hashes->push_back(hash());
+  };
+  try {
+    program_->advance(steps, hashes);
+  } catch (const RunError&) {
+    look();
+    throw;
   }
+  look();
 }
 
 Momentum IntegerRun::momentum() {

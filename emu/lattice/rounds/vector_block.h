@@ -2,8 +2,7 @@
 // Runs a graph of integers over lanes of doubles, in vectors: golden's numbers wherever doubles hold them all
 // (class A of graph::exactness_of). kernel_rule.h has the arithmetic of a rounding.
 //
-// A node's lanes have a place for as long as somebody reads them, so a graph's values stay in the nearest
-// cache.
+// Lanes have registers of their own (graph::registers_for), so a graph's values stay in the nearest cache.
 #pragma once
 
 #include <cstdint>
@@ -47,9 +46,8 @@ class VectorBlock {
  public:
   static constexpr size_t kRoom = 256;  // lanes
 
-  // `parts`: nodes, in the order of the graph, that are run one part after the other; constants and inputs
-  // among them are not run. `outputs` and inputs keep their lanes. In parts after the first all lanes count,
-  // so `within` is its input. The graph must outlive the block.
+  // `parts` and `outputs` as of registers_for: in parts after the first all lanes count. The graph must
+  // outlive the block.
   VectorBlock(const graph::Graph& graph, const std::vector<std::vector<int>>& parts,
               const std::vector<int>& outputs);
 
@@ -62,11 +60,11 @@ class VectorBlock {
   bool run(size_t part, size_t lanes) const;
 
  private:
-  VectorStep step_of(int node, bool all_count);
+  VectorStep step_of(int node);
 
   const graph::Graph& graph_;
   std::vector<VectorTable> tables_;
-  std::vector<double*> place_;  // by node; null: not run
+  std::vector<double*> place_;  // by node; null: it is not run
   PaddedArray<double> memory_;
   std::vector<std::vector<VectorStep>> parts_;
 };

@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_ref/rounds_code.cpp"

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: MIT
+#include "gpu_ref/rounds_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "gpu_ref/rounds_list.h"
+#include "hw/cell_box.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
+#include "model/program/integer_program.h"
+
+namespace cuboct::gpu {
+namespace {
+
+constexpr double kSkin = 0.15;          // of a list, of what the rule reaches
+constexpr uint32_t kLongestBatch = 64;  // steps without the host
+constexpr uint64_t kMostBins = 1u << 26;
+
+size_t index(int n) { return static_cast<size_t>(n); }
+
+class RoundsEngine final : public IntegerEngine {
+ public:
+  RoundsEngine(const Plan& plan, const State& initial, const Options& options)
+      : plan_(plan),
+        program_(plan.program->program),
+        block_(options.block),
+        stream_(options.devices.front()),
+        code_(stream_, program_),
+        count_(static_cast<uint32_t>(initial.particles.size())),
+        step_(initial.step),
+        numbers_(program_.numbers()),
+        guard_(program_.guard),
+        frac_(program_.position_frac + program_.guard) {
+    make_cells();
+    make_room();
+    upload(initial);
+  }
+
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    const uint64_t end = step_ + steps;
+    while (step_ < end && !interrupted()) {
+      if (!listed_) make_lists();
+      const auto batch = static_cast<uint32_t>(std::min<uint64_t>(end - step_, kLongestBatch));
+      const uint32_t done = run(batch, hashes);
+      step_ += done;
+      age_ += done;
+      if (done == told_.old || (done < batch && age_ > 0)) {
+        listed_ = false;  // of a doubt, too: cells have counted particles that left them since
+      } else if (done < batch) {
+        step_by_golden();
+        if (hashes != nullptr) hashes->push_back(hash());
+      }
+    }
+  }
+  uint64_t step_count() const override { return step_; }
+
+  State state() const override {
+    State state = slots();
+    std::vector<size_t> order(count_);
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](size_t a, size_t b) { return state.particles[a].id < state.particles[b].id; });
+    State sorted{state.step, {}};
+    for (const size_t k : order) {
+      sorted.particles.push_back(state.particles[k]);
+      for (size_t f = 0; f < index(numbers_); ++f)
+        sorted.fields.push_back(state.fields[k * index(numbers_) + f]);
+    }
+    return sorted;
+  }
+  uint64_t hash() const override { return hash_of(plan_.lattice, state()); }
+  // Golden's slots are not kept: by id.
+  void for_each_slot(const std::function<void(const Particle&)>& see) const override {
+    for (const Particle& particle : state().particles) see(particle);
+  }
+  cuboct::Counters counters() const override {
+    return {{"list_builds", static_cast<double>(builds_)},
+            {"golden_steps", static_cast<double>(golden_steps_)},
+            {"longest_list", static_cast<double>(longest_)}};
+  }
+
+ private:
+  // What the device told of a batch.
+  struct Told {
+    uint32_t doubt = kNoStep, old = kNoStep;
+  };
+
+  void make_cells() {
+    const CellBox box = box_of(plan_.lattice, true);
+    uint64_t all = 1;
+    for (size_t a = 0; a < 3; ++a) {
+      cells_.low[a] = box.low[a];
+      cells_.extent[a] = static_cast<int>(box.extent(a));
+      cells_.period[a] = plan_.lattice.period()[a];
+      all *= static_cast<uint64_t>(box.extent(a));
+    }
+    if (all > kNoStep / 2) throw InputError("the lattice's box has too many cells for the gpu engine");
+    std::vector<uint8_t> exists(all);
+    for (uint32_t n = 0; n < plan_.lattice.size(); ++n) {
+      const Cell& c = plan_.lattice.cell(n);
+      uint64_t at = 0;
+      for (size_t a = 3; a-- > 0;)
+        at = at * static_cast<uint64_t>(cells_.extent[a]) + static_cast<uint64_t>(c[a] - cells_.low[a]);
+      exists[at] = 1;
+    }
+    exists_.set(stream_, exists);
+    occupancy_.resize(all);
+    cells_.exists = exists_.data(), cells_.occupancy = occupancy_.data();
+    cells_.capacity = static_cast<uint32_t>(plan_.arch.capacity);
+
+    const Widths& widths = plan_.rule.widths;
+    // Of a difference half a unit along three axes, for both of a pair.
+    reach_ = std::sqrt(std::ldexp(static_cast<double>(plan_.rule.cutoff2), -2 * widths.difference_frac)) +
+             2 * std::ldexp(1.0, -widths.difference_frac);
+    skin_ = kSkin * reach_;
+    constexpr int kLeastBins = 3;  // of a ring: fewer would meet a particle from both sides
+    for (size_t a = 0; a < 3; ++a)
+      if (cells_.period[a] > 0) skin_ = std::min(skin_, double(cells_.period[a]) / kLeastBins - reach_);
+    skin_ = std::max(skin_, 0.0);
+    double size = reach_ + skin_;
+    for (;; size *= 1.26) {
+      uint64_t bins = 1;
+      for (size_t a = 0; a < 3; ++a) {
+        bins_.low[a] = int64_t{cells_.low[a]} << program_.position_frac;
+        bins_.length[a] = int64_t{cells_.extent[a]} << program_.position_frac;
+        bins_.wraps[a] = cells_.period[a] > 0;
+        const int least = bins_.wraps[a] ? kLeastBins : 1;
+        bins_.count[a] = std::max(least, static_cast<int>(cells_.extent[a] / size));
+        bins *= static_cast<uint64_t>(bins_.count[a]);
+      }
+      if (bins <= kMostBins) break;
+    }
+    bin_count_.resize(index(bins_.count[0]) * index(bins_.count[1]) * index(bins_.count[2]));
+    bin_first_.resize(bin_count_.size());
+    bin_taken_.resize(bin_count_.size());
+  }
+
+  void make_room() {
+    if (count_ >= 1u << kPartnerBits)
+      throw InputError("more particles than the gpu engine lists for a rule of text: 2^27");
+    const bool displaced = !program_.motion.u.empty() || plan_.rule.pd;
+    for (Copy& copy : copies_) {
+      for (size_t a = 0; a < 3; ++a) {
+        copy.x[a].resize(count_), copy.v[a].resize(count_);
+        if (displaced) copy.u[a].resize(count_);
+      }
+      copy.fields.resize(index(numbers_));
+      for (Array<int64_t>& field : copy.fields) field.resize(count_);
+      copy.type.resize(count_), copy.id.resize(count_);
+    }
+    for (size_t a = 0; a < 3; ++a) listed_at_[a].resize(count_), home_[a].resize(count_);
+    for (auto* a : {&bin_, &order_, &entered_, &counts_}) a->resize(count_);
+    control_.resize(1);
+    most_.resize(1);
+    hashes_.resize(kLongestBatch + 1);
+  }
+
+  struct Copy {
+    std::array<Array<int64_t>, 3> x, v, u;
+    std::vector<Array<int64_t>> fields;
+    Array<uint8_t> type;
+    Array<uint32_t> id;
+  };
+  // Positions and velocities of copy `k`; types and ids stand in copy `who_`, and each number of the fields
+  // where it was written last.
+  RoundsView view(int k) {
+    RoundsView view{};
+    for (size_t a = 0; a < 3; ++a) {
+      view.x[a] = copies_[index(k)].x[a].data(), view.v[a] = copies_[index(k)].v[a].data();
+      view.u[a] = copies_[index(k)].u[a].data();
+    }
+    for (size_t f = 0; f < index(numbers_); ++f) view.fields[f] = copies_[field_at_[f]].fields[f].data();
+    view.type = copies_[who_].type.data(), view.id = copies_[who_].id.data();
+    return view;
+  }
+
+  void upload(const State& state) {
+    at_ = 0, who_ = 0;
+    field_at_.assign(index(numbers_), 0);
+    std::vector<int64_t> column(count_);
+    const auto put = [&](Array<int64_t>& array, const auto& value) {
+      for (size_t k = 0; k < count_; ++k) column[k] = value(k);
+      array.put(stream_, 0, column);
+    };
+    Copy& copy = copies_[0];
+    for (size_t a = 0; a < 3; ++a) {
+      put(copy.x[a], [&](size_t k) {
+        const Particle& p = state.particles[k];
+        return p.x[a] + (int64_t{plan_.lattice.cell(p.cell)[a]} << frac_);
+      });
+      put(copy.v[a], [&](size_t k) { return state.particles[k].v[a]; });
+      if (copy.u[a].size() > 0) put(copy.u[a], [&](size_t k) { return state.particles[k].u[a]; });
+    }
+    for (size_t f = 0; f < index(numbers_); ++f)
+      put(copy.fields[f], [&](size_t k) { return state.fields[k * index(numbers_) + f]; });
+    std::vector<uint8_t> types;
+    std::vector<uint32_t> ids;
+    for (const Particle& p : state.particles) types.push_back(p.type), ids.push_back(p.id);
+    copy.type.put(stream_, 0, types);
+    copy.id.put(stream_, 0, ids);
+    listed_ = false;
+  }
+
+  // Of copy `at_`, in the order of the device.
+  State slots() const {
+    State state{step_, std::vector<Particle>(count_)};
+    const Copy& copy = copies_[index(at_)];
+    const std::vector<uint8_t> types = copies_[who_].type.host(stream_, 0, count_);
+    const std::vector<uint32_t> ids = copies_[who_].id.host(stream_, 0, count_);
+    std::vector<Cell> cell(count_);
+    const Cell& period = plan_.lattice.period();
+    for (size_t a = 0; a < 3; ++a) {
+      const std::vector<int64_t> x = copy.x[a].host(stream_, 0, count_),
+                                 v = copy.v[a].host(stream_, 0, count_);
+      std::vector<int64_t> u(count_);
+      if (copy.u[a].size() > 0) u = copy.u[a].host(stream_, 0, count_);
+      for (size_t k = 0; k < count_; ++k) {
+        Particle& p = state.particles[k];
+        p.x[a] = x[k] & ((int64_t{1} << frac_) - 1);
+        p.v[a] = v[k], p.u[a] = u[k];
+        cell[k][a] = static_cast<int32_t>(x[k] >> frac_);
+        if (period[a] > 0) cell[k][a] = ((cell[k][a] % period[a]) + period[a]) % period[a];
+      }
+    }
+    for (size_t k = 0; k < count_; ++k) {
+      state.particles[k].type = types[k], state.particles[k].id = ids[k];
+      state.particles[k].cell = plan_.lattice.find(cell[k]);
+    }
+    state.fields.resize(count_ * index(numbers_));
+    for (size_t f = 0; f < index(numbers_); ++f) {
+      const std::vector<int64_t> values = copies_[field_at_[f]].fields[f].host(stream_, 0, count_);
+      for (size_t k = 0; k < count_; ++k) state.fields[k * index(numbers_) + f] = values[k];
+    }
+    return state;
+  }
+
+  void make_lists() {
+    bin_count_.zero(stream_), bin_taken_.zero(stream_), occupancy_.zero(stream_);
+    for (size_t a = 0; a < 3; ++a) cells_.home[a] = home_[a].data();
+    cells_.entered = entered_.data();
+    for_each(stream_, 0, count_, block_,
+             RoundsSettle{view(at_), bins_, cells_, guard_, frac_, bin_.data(), bin_count_.data()});
+    exclusive_sums(stream_, bin_count_.data(), bin_first_.data(), static_cast<uint32_t>(bin_count_.size()));
+    for_each(stream_, 0, count_, block_,
+             RoundsOrder{bin_.data(), bin_first_.data(), bin_taken_.data(), order_.data()});
+    gather();
+    const double unit = std::ldexp(1.0, program_.position_frac);
+    RoundsMakeList make{bins_,
+                        {listed_at_[0].data(), listed_at_[1].data(), listed_at_[2].data()},
+                        bin_first_.data(),
+                        bin_count_.data(),
+                        std::pow((reach_ + skin_) * unit, 2),
+                        entries_.data(),
+                        counts_.data(),
+                        width_,
+                        count_};
+    for (;;) {
+      most_.zero(stream_);
+      make.entries = entries_.data(), make.width = width_;
+      max_each(stream_, 0, count_, block_, make, most_.data());
+      const uint32_t most = most_.host(stream_, 0, 1)[0];
+      longest_ = std::max<uint64_t>(longest_, most);
+      if (most <= width_) break;
+      width_ = (most + 7) / 8 * 8;
+      entries_.resize(size_t{width_} * count_);
+    }
+    list_.entries = entries_.data(), list_.counts = counts_.data(), list_.stride = count_;
+    for (int s = 0; s < 27; ++s)
+      for (int a = 0; a < 3; ++a)
+        list_.shift[s][a] = ((a == 0 ? s % 3 : a == 1 ? s / 3 % 3 : s / 9) - 1) * bins_.length[a];
+    for (size_t a = 0; a < 3; ++a) list_.listed[a] = listed_at_[a].data();
+    // Both of a pair move, and both were rounded to a visible unit, then and now.
+    const double allowed = skin_ * unit / 2 - 4;
+    list_.allowed2 = allowed > 0 ? allowed * allowed : -1;
+    ++builds_;
+    age_ = 0;
+    listed_ = true;
+  }
+
+  void gather() {
+    const int to = 1 - at_;
+    RoundsView target{};
+    Copy& copy = copies_[index(to)];
+    for (size_t a = 0; a < 3; ++a) {
+      target.x[a] = copy.x[a].data(), target.v[a] = copy.v[a].data();
+      target.u[a] = copy.u[a].data();
+    }
+    // The numbers of the fields move between their own two copies.
+    for (size_t f = 0; f < index(numbers_); ++f)
+      target.fields[f] = copies_[1 - field_at_[f]].fields[f].data();
+    Copy& others = copies_[1 - who_];
+    RoundsGather gather{order_.data(),    view(at_),       target,  others.type.data(),
+                        others.id.data(), entered_.data(), {},      {},
+                        guard_,           frac_,           numbers_};
+    for (size_t a = 0; a < 3; ++a) gather.listed[a] = listed_at_[a].data(), gather.home[a] = home_[a].data();
+    for_each(stream_, 0, count_, block_, gather);
+    at_ = to, who_ = 1 - who_;
+    for (size_t& at : field_at_) at = 1 - at;
+  }
+
+  // Where the state is after a step that began at these copies: each number of a field that some round writes
+  // is in its other copy.
+  struct Places {
+    int at;
+    std::vector<size_t> fields;
+  };
+  Places places() const { return {at_, field_at_}; }
+
+  uint32_t run(uint32_t steps, std::vector<uint64_t>* hashes) {
+    for_each(stream_, 0, 1, 32, RoundsReset{control_.data()});
+    if (hashes != nullptr) hashes_.zero(stream_);
+    std::vector<Places> after{places()};
+    for (uint32_t n = 1; n <= steps; ++n) {
+      step(n);
+      after.push_back(places());
+      if (hashes == nullptr) continue;
+      RoundsHash hash{view(at_), {cells_.period[0], cells_.period[1], cells_.period[2]},
+                      frac_,     numbers_,
+                      n,         control_.data()};
+      sum_each(stream_, 0, count_, block_, hash, hashes_.data() + n);
+    }
+    const RoundsControl control = control_.host(stream_, 0, 1)[0];
+    told_ = {control.doubt, control.old};
+    uint32_t done = steps;
+    if (told_.doubt <= steps) done = told_.doubt - 1;
+    done = std::min(done, told_.old);
+    at_ = after[done].at, field_at_ = after[done].fields;
+    if (hashes != nullptr) {
+      const std::vector<uint64_t> sums = hashes_.host(stream_, 1, done);
+      hashes->insert(hashes->end(), sums.begin(), sums.end());
+    }
+    return done;
+  }
+
+  void step(uint32_t number) {
+    const int from = at_;
+    for (size_t k = 0; k < code_.rounds().size(); ++k) {
+      const bool last = k + 1 == code_.rounds().size();
+      RoundsStep round{code_.rounds()[k],  view(from), view(1 - from), list_, cells_, guard_, frac_, last,
+                       step_ + number - 1, number,     control_.data()};
+      // What a round writes it makes in the other copy, as others may still read this one.
+      std::vector<bool> written(index(numbers_));
+      for (const graph::Write& write : program_.rounds[k].writes)
+        written[index(program_.place(write.field) + write.component)] = true;
+      for (size_t f = 0; f < written.size(); ++f) {
+        if (written[f]) round.to.fields[f] = copies_[1 - field_at_[f]].fields[f].data();
+      }
+      for_each(stream_, 0, count_, block_, round);
+      for (size_t f = 0; f < written.size(); ++f)
+        if (written[f]) field_at_[f] = 1 - field_at_[f];
+    }
+    at_ = 1 - from;
+  }
+  // Throws where the step cannot be done.
+  void step_by_golden() {
+    const State before = state();
+    GoldenIntegers golden(program_, plan_.lattice, plan_.arch.capacity, before);
+    golden.advance(1, nullptr);
+    ++golden_steps_;
+    ++step_;
+    upload(golden.state());
+  }
+
+  const Plan& plan_;
+  const graph::FixedProgram& program_;
+  int block_;
+  mutable Stream stream_;
+  ProgramOnDevice code_;
+  uint32_t count_;
+  uint64_t step_;
+  int numbers_, guard_, frac_;
+  double reach_ = 0, skin_ = 0;  // cells
+  RoundsCells cells_{};
+  RoundsBins bins_{};
+  RoundsList list_{};
+  std::array<Copy, 2> copies_;
+  int at_ = 0;
+  size_t who_ = 0;
+  std::vector<size_t> field_at_;  // by number
+  std::array<Array<int64_t>, 3> listed_at_;
+  std::array<Array<int32_t>, 3> home_;
+  Array<uint32_t> bin_, order_, entered_, counts_, entries_, bin_count_, bin_first_, bin_taken_, occupancy_,
+      most_;
+  Array<uint8_t> exists_;
+  Array<RoundsControl> control_;
+  Array<uint64_t> hashes_;
+  uint32_t width_ = 0;
+  Told told_;
+  bool listed_ = false;
+  uint64_t age_ = 0;  // steps that the list has served
+  uint64_t builds_ = 0, golden_steps_ = 0, longest_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan& plan, const State& initial,
+                                                  const Options& options) {
+  if (options.devices.size() > 1)
+    throw InputError("a rule of text runs on one GPU", "--gpus 1").about({"rule.file", "rule"});
+  return std::make_unique<RoundsEngine>(plan, initial, options);
+}
+
+}  // namespace cuboct::gpu
