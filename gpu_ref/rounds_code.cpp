@@ -34,7 +34,7 @@ bool is_own(Source source) {
 // Nodes that a list needs beside those of another.
 std::vector<int> without(const std::vector<int>& nodes, const std::vector<int>& others) {
   std::vector<int> rest;
-  std::ranges::set_difference(nodes, others, std::back_inserter(rest));
+  std::set_difference(nodes.begin(), nodes.end(), others.begin(), others.end(), std::back_inserter(rest));
   return rest;
 }
 
@@ -105,27 +105,8 @@ struct Code {
   }
 };
 
-}  // namespace
-
-template <typename T>
-Span<T> ProgramOnDevice::put(Stream& stream, const std::vector<T>& values, std::vector<Array<T>>& into) {
-  Array<T>& array = into.emplace_back(stream.device());
-  array.set(stream, values);
-  return {array.data(), static_cast<int>(values.size())};
-}
-
-const CodeTable* ProgramOnDevice::put_tables(Stream& stream, const graph::Graph& graph) {
-  std::vector<CodeTable> tables;
-  for (const FixedTable& table : graph.tables)
-    tables.push_back({static_cast<int>(table.shape), table.degree, table.difference_frac, table.index_bits,
-                      table.bin_bits, table.first_octave, table.fraction_bits,
-                      put(stream, table.c0, entries_).data, put(stream, table.c1, entries_).data,
-                      put(stream, table.c2, entries_).data});
-  return put(stream, tables, tables_).data;
-}
-
-RoundCode ProgramOnDevice::code_of(Stream& stream, const graph::FixedProgram& program,
-                                   const graph::Round& round) {
+RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round& round,
+                         std::vector<bool>& written) {
   std::vector<int> terms;
   for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
   std::vector<int> outputs;
@@ -150,54 +131,43 @@ RoundCode ProgramOnDevice::code_of(Stream& stream, const graph::FixedProgram& pr
   const Code done{program, round, round.finish, finish_registers};
   std::vector<int> both = early;
   both.insert(both.end(), late.begin(), late.end());
-  RoundCode code{};
-  code.constants = put(stream, pair.constants(both), operations_);
-  code.early = put(stream, pair.operations(early, false), operations_);
-  code.late = put(stream, pair.operations(late, true), operations_);
-  code.finish_constants = put(stream, done.constants(finish), operations_);
-  code.finish = put(stream, done.operations(finish, false), operations_);
-  code.own = put(stream, pair.fetches(both, true), fetches_);
-  code.early_fetch = put(stream, pair.fetches(early, false), fetches_);
-  code.late_fetch = put(stream, pair.fetches(late, false), fetches_);
-  code.finish_fetch = put(stream, done.fetches(finish, true), fetches_);
-  code.terms = put(stream, pair.axes(terms), stores_);
-  std::vector<Store> writes;
+  RoundLists lists{.constants = pair.constants(both),
+                   .early = pair.operations(early, false),
+                   .late = pair.operations(late, true),
+                   .finish_constants = done.constants(finish),
+                   .finish = done.operations(finish, false),
+                   .own = pair.fetches(both, true),
+                   .early_fetch = pair.fetches(early, false),
+                   .late_fetch = pair.fetches(late, false),
+                   .finish_fetch = done.fetches(finish, true),
+                   .terms = pair.axes(terms),
+                   .writes = {},
+                   .v = done.axes(motion.v),
+                   .u = done.axes(motion.u),
+                   .drift = done.axes(motion.drift),
+                   .when = pair.at(round.when)};
   for (const graph::Write& write : round.writes) {
     const int number = program.place(write.field) + write.component;
-    writes.push_back({done.at(write.node), static_cast<uint8_t>(number)});
-    if (written_[index(number)])
+    lists.writes.push_back({done.at(write.node), static_cast<uint8_t>(number)});
+    if (written[index(number)])
       throw InputError(fmt::format("two rounds make '{}': the gpu engine has it made once a step",
                                    program.fields[index(write.field)].name),
                        "engine lattice runs it")
           .about({"rule.file", "rule"});
-    written_[index(number)] = true;
+    written[index(number)] = true;
   }
-  code.writes = put(stream, writes, stores_);
-  code.v = put(stream, done.axes(motion.v), stores_);
-  code.u = put(stream, done.axes(motion.u), stores_);
-  code.drift = put(stream, done.axes(motion.drift), stores_);
-  code.tables = put_tables(stream, round.pair);
-  code.finish_tables = put_tables(stream, round.finish);
-  code.type_constants = type_constants_, code.pair_constants = pair_constants_;
-  code.types = program.types;
-  code.when = pair.at(round.when);
-  code.sums = static_cast<int>(terms.size());
-  return code;
+  return lists;
 }
 
-ProgramOnDevice::ProgramOnDevice(Stream& stream, const graph::FixedProgram& program)
-    : written_(index(program.numbers())) {
+}  // namespace
+
+std::vector<RoundLists> code_of(const graph::FixedProgram& program) {
   if (program.numbers() > kMostNumbers)
     refuse(program.name, "numbers of a particle", index(program.numbers()), kMostNumbers);
-  const auto values_of = [&](const std::vector<graph::Constants>& constants) {
-    std::vector<int64_t> values;
-    for (const graph::Constants& one : constants)
-      values.insert(values.end(), one.values.begin(), one.values.end());
-    return put(stream, values, constants_).data;
-  };
-  type_constants_ = values_of(program.type_constants);
-  pair_constants_ = values_of(program.pair_constants);
-  for (const graph::Round& round : program.rounds) rounds_.push_back(code_of(stream, program, round));
+  std::vector<bool> written(index(program.numbers()));
+  std::vector<RoundLists> rounds;
+  for (const graph::Round& round : program.rounds) rounds.push_back(code_of_round(program, round, written));
+  return rounds;
 }
 
 }  // namespace cuboct::gpu

@@ -3,7 +3,8 @@
 // operations are golden's (model/graph/interpret.h).
 #pragma once
 
-#include "gpu_ref/rounds_code.h"
+#include "gpu_ref/grid_view.h"
+#include "gpu_ref/rounds_program.h"
 #include "model/base/hash.h"
 #include "model/graph/graph.h"
 #include "model/graph/table_value.h"
@@ -247,7 +248,7 @@ struct RoundsStep {
   }
 
   CUBOCT_DEVICE bool meet(uint32_t i, int64_t (&sums)[kMostNumbers]) const {
-    for (int k = 0; k < code.sums; ++k) sums[k] = 0;
+    for (int k = 0; k < code.terms.count; ++k) sums[k] = 0;
     RoundsRegisters r;
     operate(code.constants, code.tables, r);
     for (int k = 0; k < code.own.count; ++k) r.at[code.own.data[k].to] = own(code.own.data[k], i);
