@@ -24,6 +24,8 @@ uint64_t hash_of(const Lattice& lattice, const State& state) {
     Hash hash;
     hash.resume(hash_of(lattice, state.particles[k]));
     for (size_t f = 0; f < fields; ++f) hash.add(state.fields[k * fields + f]);
+    if (!state.bond_begin.empty())
+      for (uint64_t b = state.bond_begin[k]; b < state.bond_begin[k + 1]; ++b) hash.add(state.bonds[b]);
     sum += hash.value();
   }
   return sum;
