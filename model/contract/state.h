@@ -27,9 +27,8 @@ struct State {
   // What a program (model/graph/program.h) keeps of a particle besides: so many numbers of each, in the order
   // of the particles. Empty of the pair law.
   std::vector<int64_t> fields = {};
-  // What the rounds of a program keep of bonds (model/graph/bond_rows.h): a particle's are
-  // bonds[bond_begin[k]
-  // ... bond_begin[k + 1]), in the order of its row. Both empty where there are none.
+  // What the rounds of a program keep of bonds, in the order of its rows (model/graph/bond_rows.h): those of
+  // particle `id` begin at bond_begin[id], and one more entry ends them. Both empty where there are none.
   std::vector<int64_t> bonds = {};
   std::vector<uint64_t> bond_begin = {};
 
