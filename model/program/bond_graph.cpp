@@ -46,6 +46,12 @@ BondFrame::BondFrame(const BondClasses& classes, const FixedRule& base, graph::F
   }
   bits_ = static_cast<int>(std::bit_width(static_cast<uint64_t>(widest)));
   bits_ += bits_ % 2;
+  constexpr int kLeastBits = 26;
+  if (bits_ < kLeastBits)
+    throw InputError(
+        fmt::format("r^2 has {} bits about the length of a bond: tables need {}", bits_, kLeastBits),
+        "more bits of difference_frac")
+        .about({"widths.difference_frac", "rule.file", "rule"});
 }
 
 int BondFrame::read(graph::Builder& b, const std::vector<int64_t>& by_class, int frac,

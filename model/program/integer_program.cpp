@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <optional>
 
 #include "model/base/error.h"
@@ -15,8 +13,7 @@
 #include "model/graph/parity.h"
 #include "model/program/bond_graph.h"
 #include "model/program/for_ever.h"
-#include "model/program/integers.h"
-#include "model/program/radial.h"
+#include "model/program/lowering.h"
 
 namespace cuboct {
 namespace {
@@ -25,267 +22,8 @@ using graph::Builder;
 using graph::FixedProgram;
 using Source = RealSource;
 
-constexpr int kFieldBits = 46;    // of a field that goes on
-constexpr int kSumBits = 50;      // of a sum
-constexpr double kSteepest = 512; // a table begins where its function is so many times what it is further out
-constexpr double kFurther = 0.55;  // of the reach
-constexpr double kNearest = 1.0 / 64;
-
-[[noreturn]] void refuse(const std::string& what, const std::string& hint = "engine reference runs it") {
-  throw InputError(what, hint).about({"rule.file", "rule"});
-}
-
-// One graph of the rule, into one of integers.
-class Lowering {
- public:
-  Lowering(const RealGraph& graph, Builder& builder, std::function<Scaled(const RealInput&)> input)
-      : graph_(graph),
-        b_(builder),
-        integers_(builder),
-        input_(std::move(input)),
-        made_(graph.nodes().size()) {}
-
-  // v_j - v_i by axis, which has a format of its own.
-  void relative(std::function<Scaled(uint32_t)> velocity) { relative_ = std::move(velocity); }
-  // Of a pair: r2 as a node, and up to where it counts, m^2.
-  void pairs(const Radial& radial, const Scaled& r2, double reach2) {
-    radial_ = &radial, r2_ = r2, reach2_ = reach2;
-  }
-  // The same of a bond that lasts.
-  void bonds(const Radial& radial, const Scaled& r2, BondGraph& bond) {
-    radial_ = &radial, r2_ = r2, bond_ = &bond;
-  }
-  // From here on the node is worth this.
-  void replace(NodeId id, const Scaled& value) { made_[id] = value; }
-  // Whether a table of a bond is part of it.
-  bool needs_window(NodeId id) const {
-    const RealNode& node = graph_.at(id);
-    if (bond_ == nullptr || radial_->is_fixed(id) || radial_->is_r2(id)) return false;
-    if (of_r(id)) return !is_comparison(node.op);
-    for (size_t k = 0; k < static_cast<size_t>(arity(node.op)); ++k)
-      if (needs_window(node.of[k])) return true;
-    return false;
-  }
-  // `unit`: that it should count in, where that costs nothing; 0: any.
-  Scaled value(NodeId id, double unit = 0) {
-    if (unit > 0 && wants(id)) return made(id, unit);
-    if (!made_[id]) made_[id] = made(id, 0);
-    return *made_[id];
-  }
-  Integers& integers() { return integers_; }
-
- private:
-  bool of_r(NodeId id) const { return radial_ != nullptr && radial_->is_of_r(id); }
-  bool fixed(NodeId id) const { return radial_ != nullptr && radial_->is_fixed(id); }
-  // Whether a table of r is a factor of it, or of each part of a sum.
-  bool wants(NodeId id) const {
-    const RealNode& node = graph_.at(id);
-    if (of_r(id)) return !radial_->is_r2(id);
-    if (node.op == RealOp::add || node.op == RealOp::subtract) return wants(node.of[0]) && wants(node.of[1]);
-    if (!is_product(node.op)) return false;
-    Factors factors;
-    gather(id, false, factors);
-    return !factors.of_r.empty();
-  }
-
-  // A product taken apart: what is constant, what depends on r alone, what of a bond never changes, and what
-  // else there is.
-  using Factor = std::pair<NodeId, bool>;  // true: it divides
-  struct Factors {
-    double constant = 1;
-    std::vector<Factor> of_r, fixed, others;
-  };
-  static bool is_product(RealOp op) {
-    return op == RealOp::multiply || op == RealOp::divide || op == RealOp::negate;
-  }
-  void gather(NodeId id, bool divides, Factors& to) const {
-    const RealNode& node = graph_.at(id);
-    if (node.op == RealOp::constant) {
-      to.constant *= divides ? 1 / node.value : node.value;
-    } else if (fixed(id)) {
-      to.fixed.emplace_back(id, divides);
-    } else if (of_r(id)) {
-      to.of_r.emplace_back(id, divides);
-    } else if (node.op == RealOp::negate) {
-      to.constant = -to.constant;
-      gather(node.of[0], divides, to);
-    } else if (is_product(node.op)) {
-      gather(node.of[0], divides, to);
-      gather(node.of[1], divides != (node.op == RealOp::divide), to);
-    } else {
-      to.others.emplace_back(id, divides);
-    }
-  }
-
-  Scaled made(NodeId id, double unit) {
-    const RealNode& node = graph_.at(id);
-    if (node.op == RealOp::constant) return Scaled::of(node.value);
-    if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
-    if (fixed(id)) return fixed_product({{id, false}});
-    if (bond_ != nullptr && of_r(id) && is_comparison(node.op))
-      return bond_->threshold([&](double r2, size_t length) { return radial_->at(id, r2, length) != 0; });
-    if (of_r(id) && !is_truth(node.op)) return table({{id, false}}, unit);
-    const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
-    switch (node.op) {
-      case RealOp::input:
-        return input_(node.input);
-      case RealOp::add:
-        return integers_.add(of(0, unit), of(1, unit));
-      case RealOp::subtract:
-        if (is_relative(node)) return relative_(graph_.at(node.of[0]).input.index);
-        return integers_.subtract(of(0, unit), of(1, unit));
-      case RealOp::multiply:
-      case RealOp::divide:
-      case RealOp::negate:
-        return product(id, unit);
-      case RealOp::absolute:
-        return integers_.absolute(of(0));
-      case RealOp::least:
-      case RealOp::most:
-        return integers_.chosen(node.op == RealOp::least, of(0), of(1));
-      case RealOp::below:
-      case RealOp::at_most:
-        return integers_.below(of(0), of(1), node.op == RealOp::at_most);
-      case RealOp::equal:
-        return integers_.equal(of(0), of(1));
-      case RealOp::both:
-        return integers_.both(of(0), of(1));
-      case RealOp::either:
-        return integers_.either(of(0), of(1));
-      case RealOp::inverse:
-        return integers_.inverse(of(0));
-      case RealOp::select:
-        return integers_.select(of(0), of(1), of(2));
-      case RealOp::power:
-      default:
-        return of_one(node, of(0));
-    }
-  }
-  // v_j - v_i of one axis.
-  bool is_relative(const RealNode& node) const {
-    const RealNode &a = graph_.at(node.of[0]), &b = graph_.at(node.of[1]);
-    return relative_ && node.op == RealOp::subtract && a.op == RealOp::input && b.op == RealOp::input &&
-           a.input.source == Source::other_velocity && b.input.source == Source::own_velocity &&
-           a.input.index == b.input.index;
-  }
-  static bool is_comparison(RealOp op) { return op == RealOp::below || op == RealOp::at_most; }
-  static bool is_truth(RealOp op) {
-    return is_comparison(op) || op == RealOp::equal || op == RealOp::both || op == RealOp::either ||
-           op == RealOp::inverse;
-  }
-
-  // One table for all that depends on r, last, in what is left of the unit.
-  Scaled product(NodeId id, double unit) {
-    Factors factors;
-    gather(id, false, factors);
-    if (!std::isfinite(factors.constant)) refuse("the rule divides by 0");
-    Scaled all = Scaled::of(factors.constant);
-    for (const auto& [of, divides] : factors.others) {
-      const Scaled x = value(of);
-      all = integers_.multiply(all, divides ? of_one({RealOp::divide, {}, 0, {}}, x) : x);
-    }
-    // A table takes in what all bonds of one length have alike.
-    if (!factors.of_r.empty())
-      std::erase_if(factors.fixed, [&](const Factor& factor) {
-        const bool alike = radial_->is_of_length(factor.first);
-        if (alike) factors.of_r.push_back(factor);
-        return alike;
-      });
-    if (!factors.fixed.empty()) all = integers_.multiply(all, fixed_product(factors.fixed));
-    if (factors.of_r.empty()) return all;
-    if (all.constant() && all.number == 0) return all;
-    const double left = all.constant() ? unit / std::abs(all.number) : unit / all.unit;
-    return integers_.multiply(all, table(factors.of_r, left));
-  }
-  Scaled fixed_product(const std::vector<Factor>& factors) {
-    std::vector<double> by_class;
-    for (size_t c = 0; c < radial_->classes(); ++c) {
-      double made = 1;
-      for (const auto& [of, divides] : factors) {
-        const double x = radial_->fixed_at(of, c);
-        made *= divides ? 1 / x : x;
-      }
-      by_class.push_back(made);
-    }
-    return bond_->constant(by_class);
-  }
-  // A function of one value that is no function of r: by a table of 14 octaves below the value's largest, or
-  // from its least on.
-  Scaled of_one(const RealNode& node, const Scaled& a) {
-    if (!a.constant() && b_.range(a.node).low < 0)
-      refuse(
-          "a root, a power, a quotient, exp, log, sin or cos of what may be negative is not in integers yet");
-    const double exponent = node.op == RealOp::power ? graph_.at(node.of[1]).value : 0;
-    const auto f = [&](double x) {
-      return node.op == RealOp::divide ? 1 / x : applied(node.op, x, exponent, 0);
-    };
-    if (a.constant()) return Scaled::of(f(a.number));
-    const double unit = std::ldexp(a.unit, -a.frac), most = unit * static_cast<double>(b_.range(a.node).high);
-    const double least = unit * static_cast<double>(b_.range(a.node).low);
-    // The bin of 64 an octave that holds the largest value is f to its end.
-    const int64_t high = b_.range(a.node).high;
-    const int64_t bin =
-        int64_t{1} << std::max(0, static_cast<int>(std::bit_width(static_cast<uint64_t>(high))) - 7);
-    const double end = unit * static_cast<double>((high / bin + 1) * bin);
-    return integers_.function(a, f, std::max(least, std::ldexp(most, -14)), end, 0);
-  }
-
-  // Of a product of what depends on r alone; the axes of a vector share it.
-  Scaled table(const std::vector<Factor>& factors, double unit) {
-    const auto [at, fresh] = tables_.try_emplace({factors, unit});
-    if (!fresh) return at->second;
-    const auto product = [&](double r2, size_t length) {
-      double made = 1;
-      for (const auto& [of, divides] : factors) {
-        const double x = radial_->at(of, r2, length);
-        made *= divides ? 1 / x : x;
-      }
-      return made;
-    };
-    at->second = bond_ != nullptr ? bond_->table(integers_, product, unit)
-                                  : fitted([&](double r2) { return product(r2, 0); }, unit);
-    return at->second;
-  }
-  // From where the function is not too steep. Nearer pairs are a fault, not a wrong force.
-  Scaled fitted(const std::function<double(double)>& f, double unit) {
-    double usual = 0;
-    constexpr int kSamples = 64;
-    const auto at = [&](double part) { return f(part * part * reach2_); };
-    for (int k = 0; k <= kSamples; ++k)
-      usual = std::max(usual, std::abs(at(kFurther + (1 - kFurther) * k / kSamples)));
-    double from = kFurther;
-    while (from > kNearest && std::isfinite(at(0.97 * from)) &&
-           std::abs(at(0.97 * from)) <= kSteepest * usual)
-      from *= 0.97;
-    const Scaled of_r2 = r2_;
-    const double core2 = from > kNearest ? from * from * reach2_ : 0;
-    const auto kept = [&](double r2) {
-      return f(std::max(r2, std::max(core2, kNearest * kNearest * reach2_)));
-    };
-    Scaled value =
-        integers_.function(of_r2, kept, std::max(core2, kNearest * kNearest * reach2_), reach2_, unit);
-    if (core2 > 0) value.node = guarded(value.node, core2);
-    return value;
-  }
-  int guarded(int node, double core2) {
-    constexpr int64_t kBeyond = int64_t{1} << 27;
-    const int core = integers_.node_in(Scaled::of(core2), r2_.unit, r2_.frac);
-    const int near = b_.lt(r2_.node, core);
-    return b_.check(b_.select(near, b_.constant(kBeyond), node), 28, Fault::strength, b_.when());
-  }
-
-  const RealGraph& graph_;
-  Builder& b_;
-  Integers integers_;
-  std::function<Scaled(const RealInput&)> input_;
-  std::function<Scaled(uint32_t)> relative_;
-  std::vector<std::optional<Scaled>> made_;
-  std::map<std::pair<std::vector<Factor>, double>, Scaled> tables_;
-  const Radial* radial_ = nullptr;
-  BondGraph* bond_ = nullptr;  // null: pairs within reach
-  Scaled r2_;
-  double reach2_ = 0;
-};
+constexpr int kFieldBits = 46;  // of a field that goes on
+constexpr int kSumBits = 50;    // of a sum
 
 class Program {
  public:
@@ -299,7 +37,6 @@ class Program {
 
   IntegerProgram take() {
     if (frame_) out_.rows = frame_->rows(start_.rows);
-    if (frame_) out_.program.partners = static_cast<int>(out_.rows->longest());
     refuse_writes_of_one_end();
     check(out_.program);
     return std::move(out_);
@@ -355,8 +92,8 @@ class Program {
   std::pair<double, double> range_of(const ProgramField& field) const {
     if (field.range) return *field.range;
     if (is_made(field) && field.kind != Value::Kind::truth)
-      refuse(fmt::format("integers need the 'range' of the field '{}'", field.name),
-             "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
+      refuse_rule(fmt::format("integers need the 'range' of the field '{}'", field.name),
+                  "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
     double low = 0, high = 0;
     for (uint32_t n = 0; n < field.numbers(); ++n)
       for (const double value : start_.particle[field.first + n])
@@ -447,6 +184,7 @@ class Program {
   // Bonds that last, and what they keep.
   void begin_bonds() {
     out_.program.bonded = true;
+    out_.program.partners = static_cast<int>(graph::BondRows{start_.rows.first, {}, {}, {}}.longest());
     classes_.emplace(rule_, start_);
     frame_.emplace(*classes_, base_, out_.program);
     out_.lengths = classes_->lengths2().size();
@@ -455,8 +193,8 @@ class Program {
       const ProgramField& field = rule_.bond[k];
       if (classes_->fixed({Source::bond_field, field.first})) continue;
       if (!field.range && field.kind != Value::Kind::truth)
-        refuse(fmt::format("integers need the 'range' of the bonds' field '{}'", field.name),
-               "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
+        refuse_rule(fmt::format("integers need the 'range' of the bonds' field '{}'", field.name),
+                    "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
       const auto [low, high] = field.range.value_or(std::pair(0.0, 1.0));
       const auto [room, frac] = format_of(field.kind, low, high);
       check_ends(field, std::max(std::abs(low), std::abs(high)));
@@ -478,7 +216,7 @@ class Program {
       for (uint64_t b = rows.first[i]; b < rows.first[i + 1]; ++b)
         for (uint32_t n = field.first; n < field.first + field.numbers(); ++n)
           if (std::abs(start_.bond[n][b] - start_.bond[n][rows.twin(i, b)]) > kSame * most)
-            refuse(
+            refuse_rule(
                 fmt::format("'{}' of the bond of particles {} and {} begins as another number at either end",
                             field.name, i, rows.other[b]),
                 "a start that both ends see alike; engine reference runs it");
@@ -531,10 +269,11 @@ class Program {
       const std::vector<graph::Parity> parities = graph::parities_of(round.pair);
       for (const graph::Write& write : round.bond_writes)
         if (!graph::is_even(parities[static_cast<size_t>(write.node)]))
-          refuse(fmt::format("the two ends of a bond may write another '{}'",
-                             out_.program.bonds[static_cast<size_t>(write.field)].name),
-                 "what both ends see alike: r, r0, the bond's fields, sums of both particles' fields; engine "
-                 "reference runs it");
+          refuse_rule(
+              fmt::format("the two ends of a bond may write another '{}'",
+                          out_.program.bonds[static_cast<size_t>(write.field)].name),
+              "what both ends see alike: r, r0, the bond's fields, sums of both particles' fields; engine "
+              "reference runs it");
     }
   }
 
@@ -689,7 +428,7 @@ class Program {
       case Source::own_field:
         return read_field(b, graph::Source::own_field, input.index);
       case Source::position:
-        refuse("a finish of integers knows no position: a particle knows its place in its cell alone");
+        refuse_rule("a finish of integers knows no position: a particle knows its place in its cell alone");
       default:
         return Scaled::of(base_.dt);
     }

@@ -8,6 +8,7 @@
 #include "model/base/error.h"
 #include "model/program/program_rule.h"
 #include "model/real/real_engine.h"
+#include "model/run/bond_counters.h"
 
 namespace cuboct {
 namespace {
@@ -133,7 +134,13 @@ void IntegerRun::renew() {
   engine_->recall(kept);
 }
 
-Counters IntegerRun::counters() { return program_->counters(); }
+Counters IntegerRun::counters() {
+  Counters counters = program_->counters();
+  if (!setting_.program.rows) return counters;
+  body();
+  add_bonds(counters, scene_.rule, *engine_->terms(), body_.size());
+  return counters;
+}
 
 Notes IntegerRun::notes() { return {{"rule", rounds_of(scene_.rule)->declaration().name}}; }
 
