@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "model/program/integer_program.h"
+
 namespace cuboct {
 namespace {
 
@@ -29,6 +31,9 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
                          std::abs(std::ldexp(static_cast<double>(stop.number), -w.relative_velocity_frac)),
                          std::ldexp(1.0, w.relative_velocity_bits - 1 - w.relative_velocity_frac));
     case Fault::strength:
+      if (plan.program != nullptr && plan.program->rows != nullptr)
+        return fmt::format("a bond of particle {} is longer or shorter than the tables of the rule reach",
+                           stop.particle);
       if (plan.program != nullptr)
         return fmt::format("a pair of particle {} came nearer than the tables of the rule reach",
                            stop.particle);
@@ -47,6 +52,9 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
     case Fault::link_order:
     case Fault::link_silent:
       return "the link lost or changed what it carries";
+    case Fault::bond_lost:
+      return fmt::format("particle {} has a bond to particle {}, which is in none of the cells around it",
+                         stop.particle, stop.number);
     case Fault::none:
       break;
   }
@@ -80,6 +88,8 @@ const char* what_helps(Fault fault, bool program) {
     case Fault::link_order:
     case Fault::link_silent:
       return "mend it, or use link.check = \"retry\" in the arch";
+    case Fault::bond_lost:
+      return "let bonds break for ever ('broken' of the rule), raise node.cell_edge, or use a smaller run.dt";
     case Fault::none:
       break;
   }

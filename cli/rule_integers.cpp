@@ -49,6 +49,19 @@ void add_round(Items& items, const graph::Round& round, const std::vector<Intege
   items.add("integers of " + round.name, text, kept_by(round));
 }
 
+void add_bonds(Items& items, const IntegerProgram& program) {
+  if (!program.rows) return;
+  for (const graph::Field& field : program.program.bonds)
+    items.add("format of " + field.name,
+              field.range == graph::Interval{0, 1} ? "a bit" : fmt::format("units of 2^{}", -field.frac),
+              "of a bond; both ends write the same");
+  items.add("bonds",
+            fmt::format("{}, at most {} of a particle, of {} length{}", program.rows->other.size() / 2,
+                        program.rows->longest(), program.lengths, program.lengths == 1 ? "" : "s"),
+            program.program.broken_at < 0 ? "all must be met in the 27 cells"
+                                          : "broken for ever: those may be anywhere");
+}
+
 }  // namespace
 
 void add_integers(Items& items, const Scene& scene, const Arch& arch) {
@@ -60,6 +73,7 @@ void add_integers(Items& items, const Scene& scene, const Arch& arch) {
     for (const graph::Field& field : program.program.fields)
       items.add("format of " + field.name, fmt::format("units of 2^{}", -field.frac),
                 "integers of engine golden");
+    add_bonds(items, program);
     for (size_t k = 0; k < program.program.rounds.size(); ++k)
       add_round(items, program.program.rounds[k], program.tables[k]);
   } catch (const InputError& error) {

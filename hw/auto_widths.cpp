@@ -11,6 +11,7 @@
 #include "model/analysis/motion.h"
 #include "model/contract/format_cures.h"
 #include "model/contract/state.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
@@ -79,6 +80,9 @@ class Chooser {
       if (const int bits = bits_for(strain_ * scene_.accuracy); bits > wanted)
         wanted = bits, why = fmt::format("a strain of {:.2g}, by {}, has {:.3g} units", motion_.strain,
                                          motion_.strain_of, 1 / scene_.accuracy);
+    const RoundsRule* rounds = rounds_of(scene_.rule);
+    if (rounds != nullptr && rounds->text() != nullptr && has_reference_bonds(scene_.rule))
+      wanted = kMostDifference, why = "bonds that last open by little";
     if (left_ && left_->difference_frac > wanted) wanted = left_->difference_frac, why = kLeft;
     const int most = asked_.position_frac != kAutomatic ? std::min(kMostDifference, asked_.position_frac)
                                                         : kMostDifference;

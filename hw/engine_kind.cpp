@@ -55,8 +55,7 @@ std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, Ch
                                         const MakeIntegerEngine& make) {
   const ProgramSetting setting{*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
   if (from == nullptr) return std::make_unique<IntegerRun>(scene, scene.body, setting, 0, make);
-  const State state =
-      state_of_checkpoint(checked_state(*from, plan), plan.program->program, from->head().engine.own);
+  const State state = state_of_checkpoint(checked_state(*from, plan), *plan.program, from->head().engine.own);
   return std::make_unique<IntegerRun>(scene, setting, state, make);
 }
 

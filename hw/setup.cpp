@@ -15,6 +15,7 @@
 #include "model/base/hash.h"
 #include "model/contract/quantise.h"
 #include "model/graph/certificate.h"
+#include "model/program/bond_graph.h"
 #include "model/program/integer_program.h"
 #include "model/program/program_rule.h"
 
@@ -156,6 +157,11 @@ void add_program(const RuleProgram& text, const Scene& scene, Plan& plan) {
   Hash hash;
   hash.add(static_cast<int64_t>(plan.hash));
   for (const char c : certificate) hash.add(c);
+  if (const graph::BondRows* rows = plan.program->rows.get()) {
+    for (const uint32_t other : rows->other) hash.add(other);
+    for (const uint32_t kind : rows->kind) hash.add(kind);
+    for (const int64_t constant : rows->constants) hash.add(constant);
+  }
   plan.hash = hash.value();
 }
 
@@ -251,11 +257,15 @@ Particle InitialParticles::operator()(uint32_t id) {
 }
 
 double cell_edge_of(const Scene& scene, const Arch& arch) {
-  const double cutoff = scene.rule.cutoff();
+  // A bond that counts is met among the 27 cells, however it is stretched within its tables.
+  const RuleProgram* text = text_of(scene.rule);
+  const bool lasting = text != nullptr && text->declaration.bonds == BondRange::reference;
+  const double cutoff = scene.rule.cutoff() * (lasting ? 1 + kBondStretch : 1);
   if (arch.cell_edge > 0 && arch.cell_edge < cutoff)
-    arch.places.fail({"node.cell_edge"},
-                     fmt::format("cell_edge = {:.6g} m is shorter than the pair law's cutoff, {:.6g} m",
-                                 arch.cell_edge, cutoff));
+    arch.places.fail(
+        {"node.cell_edge"},
+        fmt::format("cell_edge = {:.6g} m is shorter than {}, {:.6g} m", arch.cell_edge,
+                    lasting ? "the reach of bonds that stretch by 1/8" : "the pair law's cutoff", cutoff));
   return periodic_edge(scene, std::max(cutoff, arch.cell_edge));
 }
 

@@ -113,7 +113,8 @@ const char* to_string(Fault fault) {
                                     "cell full after moving along z",
                                     "wrong check of a beat",
                                     "beat lost or repeated",
-                                    "beats not acknowledged"};
+                                    "beats not acknowledged",
+                                    "partner of a bond out of reach"};
   return name_in(kNames, fault);
 }
 

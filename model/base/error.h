@@ -70,9 +70,12 @@ enum class Fault : uint8_t {
   link_check,   // a beat, or an acknowledgement, whose check is wrong
   link_order,   // a beat that does not follow the one before it
   link_silent,  // beats whose acknowledgement does not come
+  // Of a program whose bonds keep fields: a bond that counts, and whose partner, `number`, is in none of the
+  // 27 cells.
+  bond_lost,
 };
 
-constexpr bool is_of_link(Fault fault) { return fault >= Fault::link_check; }
+constexpr bool is_of_link(Fault fault) { return fault >= Fault::link_check && fault <= Fault::link_silent; }
 
 const char* to_string(Fault fault);
 

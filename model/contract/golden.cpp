@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <tuple>
 
 #include "model/contract/pair_program.h"
@@ -22,6 +23,13 @@ FixedRule with_three_axes(FixedRule rule) {
   return rule;
 }
 
+// Zero, or the end of each field's range that is next to it.
+void add_zeros(std::vector<int64_t>& to, const std::vector<graph::Field>& fields) {
+  for (const graph::Field& field : fields)
+    to.insert(to.end(), static_cast<size_t>(field.numbers),
+              std::clamp<int64_t>(0, field.range.low, field.range.high));
+}
+
 auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
 
 }  // namespace
@@ -29,12 +37,16 @@ auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number)
 Golden::Golden(const FixedRule& rule, const Lattice& lattice, int capacity, const State& initial)
     : Golden(pair_program(with_three_axes(rule), capacity), lattice, capacity, initial) {}
 
-Golden::Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial)
+Golden::Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial,
+               std::shared_ptr<const graph::BondRows> rows)
     : program_(std::make_shared<const graph::FixedProgram>(std::move(program))),
       lattice_(lattice),
       capacity_(capacity),
       step_(initial.step),
-      cells_(lattice.size()) {
+      cells_(lattice.size()),
+      rows_(std::move(rows)),
+      bonds_(initial.bonds) {
+  if (program_->bonded != (rows_ != nullptr)) throw std::logic_error("bonds need their rows");
   std::vector<RunError> faults;
   for (const Particle& p : initial.particles) {
     auto& cell = cells_[p.cell];
@@ -48,6 +60,8 @@ Golden::Golden(graph::FixedProgram program, const Lattice& lattice, int capacity
 }
 
 void Golden::add_fields(const State& initial) {
+  for (size_t b = 0; initial.bonds.empty() && rows_ && b < rows_->other.size(); ++b)
+    add_zeros(bonds_, program_->bonds);
   if (program_->numbers() == 0) return;
   for (uint32_t row = 0; row < initial.particles.size(); ++row) {
     const uint32_t id = initial.particles[row].id;
@@ -56,10 +70,7 @@ void Golden::add_fields(const State& initial) {
   }
   fields_ = initial.fields;
   if (!fields_.empty()) return;
-  for (size_t k = 0; k < initial.particles.size(); ++k)
-    for (const graph::Field& field : program_->fields)
-      fields_.insert(fields_.end(), static_cast<size_t>(field.numbers),
-                     std::clamp<int64_t>(0, field.range.low, field.range.high));
+  for (size_t k = 0; k < initial.particles.size(); ++k) add_zeros(fields_, program_->fields);
 }
 
 RunError Golden::fault_of(Fault fault, uint32_t cell, uint32_t particle, int64_t number) const {
@@ -93,7 +104,25 @@ std::vector<Seen> Golden::neighbours(uint32_t cell) const {
   return all;
 }
 
-Golden::Sums Golden::meet(const graph::Round& round) const {
+// Of those near, sorted by id, the ones that the particle has a bond to. A bond that counts must be met.
+std::vector<Seen> Golden::bonded(uint32_t cell, uint32_t id, const std::vector<Seen>& near,
+                                 std::vector<RunError>& faults) {
+  const auto numbers = static_cast<size_t>(program_->bond_numbers());
+  std::vector<Seen> partners;
+  for (uint64_t b = rows_->first[id]; b < rows_->first[id + 1]; ++b) {
+    Seen bond{.bond = bonds_.data() + b * numbers,
+              .bond_constants = rows_->constants.data() + rows_->kind[b] * program_->bond_constants.size()};
+    const uint32_t other = rows_->other[b];
+    const auto at = std::ranges::lower_bound(near, other, {}, [](const Seen& s) { return s.particle->id; });
+    if (at != near.end() && at->particle->id == other)
+      partners.push_back({at->particle, at->x, at->fields, bond.bond, bond.bond_constants});
+    else if (!is_broken(*program_, bond))
+      faults.push_back(fault_of(Fault::bond_lost, cell, id, other));
+  }
+  return partners;
+}
+
+Golden::Sums Golden::meet(const graph::Round& round) {
   std::vector<RunError> faults;
   PairRun pairs(*program_, round, step_);
   const size_t numbers = numbers_of_sums(round);
@@ -101,10 +130,12 @@ Golden::Sums Golden::meet(const graph::Round& round) const {
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     if (cells_[n].empty()) continue;
     sums[n].resize(cells_[n].size() * numbers);
-    const std::vector<Seen> partners = neighbours(n);
+    std::vector<Seen> near = neighbours(n);
+    if (rows_) std::ranges::sort(near, {}, [](const Seen& s) { return s.particle->id; });
     for (size_t k = 0; k < cells_[n].size(); ++k) {
       const Particle& i = cells_[n][k];
-      pairs.add(seen(i), partners, std::span(sums[n]).subspan(k * numbers, numbers));
+      const std::vector<Seen> bonds = rows_ ? bonded(n, i.id, near, faults) : std::vector<Seen>();
+      pairs.add(seen(i), rows_ ? bonds : near, std::span(sums[n]).subspan(k * numbers, numbers));
       for (const graph::LaneFault& f : pairs.faults()) faults.push_back(fault_of(f.fault, n, i.id, f.number));
     }
   }
@@ -210,6 +241,10 @@ State Golden::state() const {
   const auto numbers = static_cast<size_t>(program_->numbers());
   for (const Particle& p : state.particles)
     for (size_t f = 0; f < numbers; ++f) state.fields.push_back(fields_[row_of_id_[p.id] * numbers + f]);
+  if (bonds_.empty()) return state;
+  state.bonds = bonds_;
+  for (const uint64_t first : rows_->first)
+    state.bond_begin.push_back(first * static_cast<uint64_t>(program_->bond_numbers()));
   return state;
 }
 

@@ -9,6 +9,7 @@
 #include "model/contract/lattice.h"
 #include "model/contract/program_run.h"
 #include "model/contract/state.h"
+#include "model/graph/bond_rows.h"
 #include "model/graph/program.h"
 
 namespace cuboct {
@@ -17,9 +18,10 @@ class Golden {
  public:
   // `capacity`: particles that a cell holds. Throws RunError where the initial state exceeds it.
   Golden(const FixedRule& rule, const Lattice& lattice, int capacity, const State& initial);
-  // Any program but one that keeps bonds. A state without fields begins with each field at zero, or at the
-  // end of its range that is next to zero.
-  Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial);
+  // Any program; one that is bonded has rows for all ids. A state without fields, or bonds, begins with each
+  // field at zero, or at the end of its range that is next to zero.
+  Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial,
+         std::shared_ptr<const graph::BondRows> rows = nullptr);
 
   // Advances one step; throws RunError at the first step that breaks a width, a capacity or the lattice.
   void step();
@@ -39,7 +41,9 @@ class Golden {
   void add_fields(const State& initial);
   Seen seen(const Particle& particle) const;
   std::vector<Seen> neighbours(uint32_t cell) const;
-  Sums meet(const graph::Round& round) const;
+  std::vector<Seen> bonded(uint32_t cell, uint32_t id, const std::vector<Seen>& near,
+                           std::vector<RunError>& faults);
+  Sums meet(const graph::Round& round);
   void finish(const graph::Round& round, const Sums& sums, std::vector<std::vector<Moving>>& moving);
   void keep(const graph::Round& round, FinishRun& run, size_t lane, uint32_t id);
   Moving moved(const Particle& particle, FinishRun& run, size_t lane) const;
@@ -52,8 +56,10 @@ class Golden {
   int capacity_;
   uint64_t step_ = 0;
   std::vector<std::vector<Particle>> cells_;
-  std::vector<int64_t> fields_;      // the program's numbers of each particle
-  std::vector<uint32_t> row_of_id_;  // where they are; empty where there are none
+  std::vector<int64_t> fields_;                  // the program's numbers of each particle
+  std::vector<uint32_t> row_of_id_;              // where they are; empty where there are none
+  std::shared_ptr<const graph::BondRows> rows_;  // null: all that is near is a partner
+  std::vector<int64_t> bonds_;                   // the program's numbers of each bond
 };
 
 }  // namespace cuboct

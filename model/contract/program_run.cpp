@@ -16,9 +16,7 @@ constexpr size_t kPairRoom = 128;  // lanes: the values of a pair law stay in th
 
 size_t at(int k) { return static_cast<size_t>(k); }
 
-// A pair's nodes that outputs need; a bond's writes are not run.
 std::vector<int> terms_of(const graph::Round& round) {
-  if (!round.bond_writes.empty()) throw std::logic_error("golden holds no bonds");
   std::vector<int> terms;
   for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
   return terms;
@@ -68,6 +66,10 @@ void fill_input(const FixedProgram& program, const Node& node, const Seen& own, 
       return each([&, c = program.type_constants[at(node.index)].values.data()](const Seen& j) {
         return c[j.particle->type];
       });
+    case Source::bond_field:
+      return each([&, n = program.bond_place(node.index) + node.axis](const Seen& j) { return j.bond[n]; });
+    case Source::bond_constant:
+      return each([&](const Seen& j) { return j.bond_constants[node.index]; });
     case Source::pair_constant:
       return each(
           [&, row = program.pair_constants[at(node.index)].values.data() +
@@ -85,8 +87,22 @@ size_t numbers_of_sums(const graph::Round& round) {
   return numbers;
 }
 
+bool is_broken(const FixedProgram& program, const Seen& bond) {
+  if (program.broken_at < 0) return false;
+  const graph::Graph& graph = program.broken;
+  graph::Block<int64_t> block(graph, 1);
+  const std::vector<int> nodes = needed_by(graph, {program.broken_at});
+  for (const int n : nodes)
+    if (graph.nodes[at(n)].op == Op::input)
+      fill_input(program, graph.nodes[at(n)], {}, 0, 1, block.values(n),
+                 [&](size_t) -> const Seen& { return bond; });
+  block.run(nodes, 1);
+  return block.values(program.broken_at)[0] != 0;
+}
+
 PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_t step)
     : program_(program),
+      round_(round),
       graph_(round.pair),
       step_(step),
       when_(round.when),
@@ -97,9 +113,11 @@ PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_
     early[at(n)] = true;
     (graph_.nodes[at(n)].op == Op::input ? early_inputs_ : early_).push_back(n);
   }
+  std::vector<int> outputs = terms_;
+  for (const graph::Write& write : round.bond_writes) outputs.push_back(write.node);
   const auto keep = [&](int n) { kept[at(n)] = early[at(n)] && graph_.nodes[at(n)].op != Op::constant; };
-  for (const int n : terms_) keep(n);
-  for (const int n : needed_by(graph_, terms_)) {
+  for (const int n : outputs) keep(n);
+  for (const int n : needed_by(graph_, outputs)) {
     if (early[at(n)]) continue;
     for (const int input : graph_.nodes[at(n)].inputs) keep(input);
     (graph_.nodes[at(n)].op == Op::input ? late_inputs_ : late_).push_back(n);
@@ -142,6 +160,11 @@ void PairRun::add_block(const Seen& own, std::span<const Seen> partners, std::sp
   for (size_t t = 0; t < terms_.size(); ++t) {
     const int64_t* term = block_.values(terms_[t]);
     sums[t] = std::accumulate(term, term + chosen_.size(), sums[t]);
+  }
+  for (const graph::Write& write : round_.bond_writes) {
+    const int64_t* value = block_.values(write.node);
+    const int place = program_.bond_place(write.field) + write.component;
+    for (size_t k = 0; k < chosen_.size(); ++k) partners[chosen_[k]].bond[place] = value[k];
   }
   faults_.insert(faults_.end(), block_.faults().begin(), block_.faults().end());
 }

@@ -12,11 +12,17 @@
 namespace cuboct {
 
 // A particle as a graph reads it. `fields`: its numbers of FixedProgram::fields; null where there are none.
+// `bond`, `bond_constants`: those of the bond to who looks, as that one keeps them.
 struct Seen {
   const Particle* particle = nullptr;
   Int3 x{};  // visible, in the frame of the cell of who looks
   const int64_t* fields = nullptr;
+  int64_t* bond = nullptr;
+  const int64_t* bond_constants = nullptr;
 };
+
+// Whether the bond counts no more.
+bool is_broken(const graph::FixedProgram& program, const Seen& bond);
 
 // Pairs of one particle and its partners. Only the nodes that `when` needs are computed of all of them; those
 // that count then move together, and the rest is computed of these.
@@ -24,7 +30,8 @@ class PairRun {
  public:
   PairRun(const graph::FixedProgram& program, const graph::Round& round, uint64_t step);
 
-  // Adds the terms of all partners, but of `own` itself, to `sums`: all components of all sums.
+  // Adds the terms of all partners, but of `own` itself, to `sums`: all components of all sums. Writes what
+  // the round makes of their bonds.
   void add(const Seen& own, std::span<const Seen> partners, std::span<int64_t> sums);
   // Of the last add(): of each pair its first fault.
   const std::vector<graph::LaneFault>& faults() const { return faults_; }
@@ -35,6 +42,7 @@ class PairRun {
   void add_block(const Seen& own, std::span<const Seen> partners, std::span<int64_t> sums);
 
   const graph::FixedProgram& program_;
+  const graph::Round& round_;
   const graph::Graph& graph_;
   uint64_t step_;
   int when_;

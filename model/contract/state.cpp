@@ -21,9 +21,12 @@ uint64_t hash_of(const Lattice& lattice, const State& state) {
   uint64_t sum = 0;
   const size_t fields = state.fields.size() / std::max<size_t>(1, state.particles.size());
   for (size_t k = 0; k < state.particles.size(); ++k) {
+    const uint32_t id = state.particles[k].id;
     Hash hash;
     hash.resume(hash_of(lattice, state.particles[k]));
     for (size_t f = 0; f < fields; ++f) hash.add(state.fields[k * fields + f]);
+    if (!state.bond_begin.empty())
+      for (uint64_t b = state.bond_begin[id]; b < state.bond_begin[id + 1]; ++b) hash.add(state.bonds[b]);
     sum += hash.value();
   }
   return sum;

@@ -27,12 +27,17 @@ struct State {
   // What a program (model/graph/program.h) keeps of a particle besides: so many numbers of each, in the order
   // of the particles. Empty of the pair law.
   std::vector<int64_t> fields = {};
+  // What the rounds of a program keep of bonds, in the order of its rows (model/graph/bond_rows.h): those of
+  // particle `id` begin at bond_begin[id], and one more entry ends them. Both empty where there are none.
+  std::vector<int64_t> bonds = {};
+  std::vector<uint64_t> bond_begin = {};
 
   bool operator==(const State&) const = default;
 };
 
-// Sum over particles (modulo 2^64) of a 64-bit mix of id, type, cell coordinates, x, v, u and fields, where
-// there are any: independent of order, so that threads, ranks and GPUs can add up their shares.
+// Sum over particles (modulo 2^64) of a 64-bit mix of id, type, cell coordinates, x, v, u, and where there
+// are any, fields and what its bonds keep: independent of order, so that threads, ranks and GPUs can add up
+// their shares.
 uint64_t hash_of(const Lattice& lattice, const Particle& particle);
 uint64_t hash_of(const Lattice& lattice, const State& state);
 

@@ -153,12 +153,14 @@ int Builder::constant(int64_t number, int frac) {
   return added({.op = Op::constant, .number = number, .frac = frac});
 }
 
-int Builder::input(Source source, int index, int axis, Interval range, int frac, bool symmetric) {
+int Builder::input(Source source, int index, int axis, Interval range, int frac, bool symmetric,
+                   bool opposite) {
   return added({.op = Op::input,
                 .source = source,
                 .index = index,
                 .axis = axis,
                 .symmetric = symmetric,
+                .opposite = opposite,
                 .range = range,
                 .frac = frac});
 }
@@ -189,6 +191,8 @@ int Builder::dot(const std::vector<int>& a, const std::vector<int>& b, int shift
 }
 
 int Builder::table(const FixedTable& table) {
+  if (const auto at = std::ranges::find(graph_.tables, table); at != graph_.tables.end())
+    return static_cast<int>(at - graph_.tables.begin());
   graph_.tables.push_back(table);
   return static_cast<int>(graph_.tables.size()) - 1;
 }

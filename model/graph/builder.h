@@ -24,7 +24,8 @@ class Builder {
  public:
   int constant(int64_t number, int frac = 0);
   // `range` must be right: everything is proven from it. A range of one number makes a constant.
-  int input(Source source, int index, int axis, Interval range, int frac = 0, bool symmetric = false);
+  int input(Source source, int index, int axis, Interval range, int frac = 0, bool symmetric = false,
+            bool opposite = false);
 
   int add(int a, int b);
   int sub(int a, int b);
@@ -35,7 +36,7 @@ class Builder {
   int mul(int a, int b, int shift = 0);
   int mac(int a, int b, int c, int shift = 0);
   int dot(const std::vector<int>& a, const std::vector<int>& b, int shift = 0);
-  int table(const FixedTable& table);  // its number, for lookups
+  int table(const FixedTable& table);  // its number, for lookups; equal tables are one
   int lookup(int table, int argument, int law = -1);
   int lt(int a, int b);
   int le(int a, int b);

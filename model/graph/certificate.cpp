@@ -69,6 +69,10 @@ std::string certificate_of(const FixedProgram& program) {
   Text text;
   put(text, "partners {}\n", program.partners);
   put_formats(text, program);
+  if (program.broken_at >= 0) {
+    put(text, "pair\n");
+    put_graph(text, program.broken);
+  }
   for (const Round& round : program.rounds) {
     put(text, "pair\n");
     put_graph(text, round.pair);

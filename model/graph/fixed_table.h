@@ -28,6 +28,7 @@ struct FixedTable {
   int fraction_bits = 17;    // T: t is unsigned and fits 18 bits signed
   int value_frac = 0;        // E: value = real value * 2^E; may be negative
   std::vector<int32_t> c0, c1, c2;
+  bool operator==(const FixedTable&) const = default;
 
   struct Address {
     uint32_t index;

@@ -16,10 +16,10 @@ constexpr const char* kOps[] = {"constant", "input",  "add",    "sub",    "neg",
                                 "msb",      "align",  "shift",  "check",  "noise"};
 static_assert(std::size(kOps) == static_cast<size_t>(Op::noise) + 1);
 
-constexpr const char* kSources[] = {
-    "apart",          "own_x",         "own_v",     "other_v",     "own_u",      "own_constant",
-    "other_constant", "pair_constant", "own_field", "other_field", "bond_field", "sum",
-    "own_id",         "other_id",      "step"};
+constexpr const char* kSources[] = {"apart",     "own_x",        "own_v",          "other_v",
+                                    "own_u",     "own_constant", "other_constant", "pair_constant",
+                                    "own_field", "other_field",  "bond_field",     "bond_constant",
+                                    "sum",       "own_id",       "other_id",       "step"};
 static_assert(std::size(kSources) == static_cast<size_t>(Source::step) + 1);
 
 bool below(Wide low, Wide high, int bits) {

@@ -60,6 +60,7 @@ enum class Source : uint8_t {
   own_field,       // particle field `index`, component `axis`
   other_field,     //
   bond_field,      // of the bond of both; both ends hold the same
+  bond_constant,   // bond constant `index` of the bond of both, as own's end has it
   sum,             // sum `index` of this round, component `axis`; in a finish alone
   own_id,          //
   other_id,        //
@@ -83,7 +84,8 @@ struct Node {
   Fault fault = Fault::none;
   Source source = Source::apart;
   int index = 0, axis = 0;
-  bool symmetric = false;  // of a pair constant: swapped types give the same
+  bool symmetric = false;  // of a pair constant: swapped types give the same; of a bond's: both ends do
+  bool opposite = false;   // of a bond constant: the other end has the negative
   Interval range{};        // every value lies in it
   int frac = 0;            // the value means v / 2^frac; for reports
   std::string name{};      // for reports

@@ -87,8 +87,9 @@ class Numbering {
 
   Form input(const Node& node, bool swap) {
     const Source source = swap ? swapped(node.source) : node.source;
-    const bool turned = swap && node.source == Source::pair_constant && !node.symmetric;
-    const bool odd = swap && node.source == Source::apart;
+    const bool constant = node.source == Source::pair_constant || node.source == Source::bond_constant;
+    const bool turned = swap && constant && !node.symmetric && !node.opposite;
+    const bool odd = swap && (node.source == Source::apart || node.opposite);
     return atom(node, {static_cast<Wide>(source), node.index, node.axis, turned}, {}, odd ? -1 : 1);
   }
 

@@ -42,12 +42,28 @@ void check_pair(const FixedProgram& program, const Round& round) {
       throw std::logic_error(fmt::format("when needs the check {}", label(round.pair, n)));
   for (const Sum& sum : round.sums)
     for (const int term : sum.terms) range_in(round.pair, term, "sum " + sum.name);
+  if (!program.bonded && !round.bond_writes.empty())
+    throw std::logic_error("a program without bonds writes some");
   check_writes(program.bonds, round.pair, round.bond_writes);
   const std::vector<Parity> parity = parities_of(round.pair);
   for (const Write& write : round.bond_writes)
     if (!is_even(parity[static_cast<size_t>(write.node)]))
       throw std::logic_error(fmt::format("the ends of a bond write {} differently",
                                          program.bonds[static_cast<size_t>(write.field)].name));
+}
+
+void check_broken(const FixedProgram& program) {
+  if (program.broken_at < 0) return;
+  check_fits(program.broken, program.broken_at, {0, 1}, "broken");
+  for (const Node& node : program.broken.nodes)
+    if (node.op == Op::input && node.source != Source::bond_field && node.source != Source::bond_constant)
+      throw std::logic_error(fmt::format("broken reads {}", to_string(node.source)));
+}
+
+int place_in(const std::vector<Field>& fields, int field) {
+  int place = 0;
+  for (int k = 0; k < field; ++k) place += fields[static_cast<size_t>(k)].numbers;
+  return place;
 }
 
 void check_motion(const FixedProgram& program, const Graph& finish) {
@@ -65,12 +81,9 @@ void check_motion(const FixedProgram& program, const Graph& finish) {
 }  // namespace
 
 int FixedProgram::numbers() const { return place(static_cast<int>(fields.size())); }
-
-int FixedProgram::place(int field) const {
-  int place = 0;
-  for (int k = 0; k < field; ++k) place += fields[static_cast<size_t>(k)].numbers;
-  return place;
-}
+int FixedProgram::place(int field) const { return place_in(fields, field); }
+int FixedProgram::bond_numbers() const { return bond_place(static_cast<int>(bonds.size())); }
+int FixedProgram::bond_place(int field) const { return place_in(bonds, field); }
 
 bool FixedProgram::symmetric(int constant) const {
   const auto& values = pair_constants.at(static_cast<size_t>(constant)).values;
@@ -115,6 +128,13 @@ int read_bond(Builder& b, const FixedProgram& program, int field, int component)
   return b.input(Source::bond_field, field, component, of.range, of.frac);
 }
 
+int read_bond_constant(Builder& b, const FixedProgram& program, int constant) {
+  const BondConstant& of = program.bond_constants.at(static_cast<size_t>(constant));
+  const int node = b.input(Source::bond_constant, constant, 0, of.range, of.frac, of.parity == Parity::even,
+                           of.parity == Parity::odd);
+  return of.range.low == of.range.high ? node : b.named(node, of.name);
+}
+
 int read_sum(Builder& b, const FixedProgram& program, const Round& round, int sum, int component) {
   const Sum& of = round.sums.at(static_cast<size_t>(sum));
   const Node& term = round.pair.nodes.at(static_cast<size_t>(of.terms.at(static_cast<size_t>(component))));
@@ -137,6 +157,7 @@ void check(const FixedProgram& program) {
     check_pair(program, round);
     check_writes(program.fields, round.finish, round.writes);
   }
+  check_broken(program);
   check_motion(program, program.rounds.back().finish);
 }
 

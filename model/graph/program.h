@@ -14,6 +14,7 @@
 
 #include "model/graph/builder.h"
 #include "model/graph/graph.h"
+#include "model/graph/parity.h"
 
 namespace cuboct::graph {
 
@@ -30,6 +31,15 @@ struct Constants {
   std::string name;
   std::vector<int64_t> values;
   int frac = 0;
+};
+
+// A number that a bond has for ever (BondRows). `parity`: what its other end has: the same, the negative, or
+// anything.
+struct BondConstant {
+  std::string name;
+  Interval range{};
+  int frac = 0;
+  Parity parity = Parity::none;
 };
 
 struct Sum {
@@ -61,16 +71,26 @@ struct FixedProgram {
   std::string name;
   int axes = 3;
   int types = 1;
-  int partners = 0;                  // of a particle, at most: 27 capacity - 1
+  int partners = 0;                  // of a particle, at most: 27 capacity - 1, or those of the longest row
   int position_frac = 0, guard = 0;  // P, G
   Interval velocity{}, displacement{};
-  std::vector<Field> fields, bonds;
+  std::vector<Field> fields;
   std::vector<Constants> type_constants, pair_constants;
+  // Partners are those of BondRows, wherever they are among the 27 cells; else all particles of these.
+  bool bonded = false;
+  std::vector<Field> bonds;  // what rounds write of a bond
+  std::vector<BondConstant> bond_constants;
+  // Of a bond alone: the truth that it counts no more, for ever. Such a bond may be of any length, and keeps
+  // its numbers where its partner is in none of the 27 cells. -1: all bonds count.
+  Graph broken;
+  int broken_at = -1;
   std::vector<Round> rounds;
   Motion motion;
 
   int numbers() const;                 // of all fields of a particle
   int place(int field) const;          // of a field's first number among them
+  int bond_numbers() const;            // of all fields of a bond
+  int bond_place(int field) const;     // as place()
   bool symmetric(int constant) const;  // of a pair constant: types may be swapped
 };
 
@@ -81,6 +101,7 @@ int read_displacement(Builder& b, const FixedProgram& program, int axis);
 int read_constant(Builder& b, const FixedProgram& program, Source source, int constant);
 int read_field(Builder& b, const FixedProgram& program, Source source, int field, int component = 0);
 int read_bond(Builder& b, const FixedProgram& program, int field, int component = 0);
+int read_bond_constant(Builder& b, const FixedProgram& program, int constant);
 // In the finish of `round`, whose pair graph is there.
 int read_sum(Builder& b, const FixedProgram& program, const Round& round, int sum, int component = 0);
 

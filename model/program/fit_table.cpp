@@ -21,6 +21,27 @@ struct Parabola {
   std::array<double, 3> c{};
 };
 
+constexpr int kWindowBits = 10;  // bins of a window
+
+Parabola through(double y0, double ym, double y1) {
+  return {{y0, -3 * y0 + 4 * ym - y1, 2 * y0 - 4 * ym + 2 * y1}};
+}
+
+// As finely as the largest coefficient lets them be.
+void keep(const std::vector<Parabola>& bins, FixedTable& table) {
+  double largest = 0;
+  for (const Parabola& bin : bins)
+    for (const double c : bin.c) largest = std::max(largest, std::abs(c));
+  int exponent = 0;
+  if (largest > 0) std::frexp(largest, &exponent);
+  table.value_frac = kCoefficient - exponent;
+  for (const Parabola& bin : bins) {
+    table.c0.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[0], table.value_frac))));
+    table.c1.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[1], table.value_frac))));
+    table.c2.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[2], table.value_frac))));
+  }
+}
+
 int octave_of(double argument) {
   return argument < 1 ? 0 : static_cast<int>(std::floor(std::log2(argument)));
 }
@@ -42,24 +63,15 @@ FittedTable fit_table(const TableRoom& room, const std::function<double(double)>
 
   const auto at = [&](double argument) { return f(std::min(argument * room.step, room.to)) / room.unit; };
   std::vector<Parabola> bins;
-  double largest = 0;
   const size_t entries = size_t{1} << table.index_bits;
   for (size_t k = 0; k < entries; ++k) {
     const int octave = table.first_octave + static_cast<int>(k >> kBinBits);
     const double width = std::ldexp(1.0, octave - kBinBits);
     const double begin = std::ldexp(1.0, octave) + width * static_cast<double>(k % (1u << kBinBits));
     const double y0 = at(begin), ym = at(begin + width / 2), y1 = at(begin + width);
-    bins.push_back({{y0, -3 * y0 + 4 * ym - y1, 2 * y0 - 4 * ym + 2 * y1}});
-    for (const double c : bins.back().c) largest = std::max(largest, std::abs(c));
+    bins.push_back(through(y0, ym, y1));
   }
-  int exponent = 0;
-  if (largest > 0) std::frexp(largest, &exponent);
-  table.value_frac = kCoefficient - exponent;
-  for (const Parabola& bin : bins) {
-    table.c0.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[0], table.value_frac))));
-    table.c1.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[1], table.value_frac))));
-    table.c2.push_back(static_cast<int32_t>(std::lround(std::ldexp(bin.c[2], table.value_frac))));
-  }
+  keep(bins, table);
   const uint64_t last = static_cast<uint64_t>(std::min(room.to / room.step, std::ldexp(1.0, octaves) - 1));
   for (size_t k = 0; k < 4 * entries; ++k) {
     const int octave = table.first_octave + static_cast<int>(k >> (kBinBits + 2));
@@ -71,6 +83,43 @@ FittedTable fit_table(const TableRoom& room, const std::function<double(double)>
     out.worst = std::max(out.worst, std::abs(value - at(static_cast<double>(argument))));
     out.largest = std::max(out.largest, std::abs(value));
   }
+  return out;
+}
+
+FittedTable fit_window(const WindowRoom& room, const std::function<double(double, size_t)>& f) {
+  FittedTable out;
+  FixedTable& table = out.table;
+  table.shape = TableShape::uniform;
+  table.degree = 2;
+  table.difference_frac = room.bits / 2;
+  table.fraction_bits = kFraction;
+  table.index_bits = std::min(kWindowBits, room.bits - kFraction);
+  const double bin = std::ldexp(1.0, room.bits - table.index_bits);
+  // What is below the last bit of t is cut off: half of that bit is added to what the bins mean.
+  const double half = std::ldexp(bin, -kFraction - 1);
+  const auto at = [&](double argument, size_t law) {
+    // The bin that holds the window's end goes on behind it.
+    return f(room.from[law] + std::min(argument, room.width[law] / room.step + bin) * room.step, law) /
+           room.unit;
+  };
+  std::vector<Parabola> bins;
+  const size_t entries = size_t{1} << table.index_bits;
+  for (size_t law = 0; law < room.from.size(); ++law)
+    for (size_t k = 0; k < entries; ++k) {
+      const double begin = static_cast<double>(k) * bin + half;
+      bins.push_back(through(at(begin, law), at(begin + bin / 2, law), at(begin + bin, law)));
+    }
+  keep(bins, table);
+  for (size_t law = 0; law < room.from.size(); ++law)
+    for (size_t k = 0; k < 4 * entries; ++k) {
+      const double argument = std::floor((static_cast<double>(k) + 0.5) * bin / 4);
+      if (argument * room.step > room.width[law]) break;
+      const double value = std::ldexp(
+          static_cast<double>(table.at(static_cast<uint64_t>(argument), static_cast<uint32_t>(law))),
+          -table.value_frac);
+      out.worst = std::max(out.worst, std::abs(value - at(argument, law)));
+      out.largest = std::max(out.largest, std::abs(value));
+    }
   return out;
 }
 

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <optional>
 
 #include "model/base/error.h"
 #include "model/contract/pair_program.h"
-#include "model/program/integers.h"
+#include "model/graph/parity.h"
+#include "model/program/bond_graph.h"
+#include "model/program/for_ever.h"
+#include "model/program/lowering.h"
 
 namespace cuboct {
 namespace {
@@ -20,289 +22,22 @@ using graph::Builder;
 using graph::FixedProgram;
 using Source = RealSource;
 
-constexpr int kFieldBits = 46;    // of a field that goes on
-constexpr int kSumBits = 50;      // of a sum
-constexpr double kSteepest = 512; // a table begins where its function is so many times what it is further out
-constexpr double kFurther = 0.55;  // of the reach
-constexpr double kNearest = 1.0 / 64;
-
-[[noreturn]] void refuse(const std::string& what, const std::string& hint = "engine reference runs it") {
-  throw InputError(what, hint).about({"rule.file", "rule"});
-}
-
-// The node r2 of a graph of pairs, and what depends on it alone.
-class Radial {
- public:
-  explicit Radial(const RealGraph& graph) : graph_(graph), of_r_(graph.nodes().size(), 0) {
-    for (NodeId id = 0; id < graph.nodes().size(); ++id) {
-      if (is_square(id)) r2_ = id;
-      of_r_[id] = r2_ == id || depends_on_r_alone(id);
-    }
-  }
-  bool is_r2(NodeId id) const { return r2_ && *r2_ == id; }
-  bool of_r(NodeId id) const { return of_r_[id] != 0; }
-  // Its value at r2, m^2.
-  double at(NodeId id, double r2) const {
-    std::vector<double> values(id + 1, 0);
-    for (NodeId k = 0; k <= id; ++k) {
-      const RealNode& node = graph_.at(k);
-      if (node.op == RealOp::constant) values[k] = node.value;
-      if (is_r2(k))
-        values[k] = r2;
-      else if (of_r_[k])
-        values[k] = applied(node.op, values[node.of[0]], values[node.of[1]], values[node.of[2]]);
-    }
-    return values[id];
-  }
-
- private:
-  bool is_input(NodeId id, uint32_t axis) const {
-    const RealNode& node = graph_.at(id);
-    return node.op == RealOp::input && node.input == RealInput{Source::difference, axis};
-  }
-  bool is_square_of(NodeId id, uint32_t axis) const {
-    const RealNode& node = graph_.at(id);
-    return node.op == RealOp::multiply && is_input(node.of[0], axis) && is_input(node.of[1], axis);
-  }
-  // (x x + y y) + z z
-  bool is_square(NodeId id) const {
-    const RealNode& node = graph_.at(id);
-    if (node.op != RealOp::add || !is_square_of(node.of[1], 2)) return false;
-    const RealNode& xy = graph_.at(node.of[0]);
-    return xy.op == RealOp::add && is_square_of(xy.of[0], 0) && is_square_of(xy.of[1], 1);
-  }
-  bool depends_on_r_alone(NodeId id) const {
-    const RealNode& node = graph_.at(id);
-    if (node.op == RealOp::constant || node.op == RealOp::input) return false;
-    bool any = false;
-    for (int k = 0; k < arity(node.op); ++k) {
-      const NodeId of = node.of[static_cast<size_t>(k)];
-      if (of_r_[of])
-        any = true;
-      else if (graph_.at(of).op != RealOp::constant)
-        return false;
-    }
-    return any;
-  }
-
-  const RealGraph& graph_;
-  std::vector<char> of_r_;
-  std::optional<NodeId> r2_;
-};
-
-// One graph of the rule, into one of integers.
-class Lowering {
- public:
-  Lowering(const RealGraph& graph, Builder& builder, std::function<Scaled(const RealInput&)> input)
-      : graph_(graph),
-        b_(builder),
-        integers_(builder),
-        input_(std::move(input)),
-        made_(graph.nodes().size()) {}
-
-  // v_j - v_i by axis, which has a format of its own.
-  void relative(std::function<Scaled(uint32_t)> velocity) { relative_ = std::move(velocity); }
-  // Of a pair: r2 as a node, and up to where it counts, m^2.
-  void pairs(const Radial& radial, const Scaled& r2, double reach2) {
-    radial_ = &radial, r2_ = r2, reach2_ = reach2;
-  }
-  // `unit`: that it should count in, where that costs nothing; 0: any.
-  Scaled value(NodeId id, double unit = 0) {
-    if (unit > 0 && wants(id)) return made(id, unit);
-    if (!made_[id]) made_[id] = made(id, 0);
-    return *made_[id];
-  }
-  Integers& integers() { return integers_; }
-
- private:
-  bool of_r(NodeId id) const { return radial_ != nullptr && radial_->of_r(id); }
-  // Whether a table of r is a factor of it, or of each part of a sum.
-  bool wants(NodeId id) const {
-    const RealNode& node = graph_.at(id);
-    if (of_r(id)) return !radial_->is_r2(id);
-    if (node.op == RealOp::add || node.op == RealOp::subtract) return wants(node.of[0]) && wants(node.of[1]);
-    if (!is_product(node.op)) return false;
-    Factors factors;
-    gather(id, false, factors);
-    return !factors.of_r.empty();
-  }
-
-  // A product taken apart: what is constant, what depends on r alone, and what else there is.
-  struct Factors {
-    double constant = 1;
-    std::vector<std::pair<NodeId, bool>> of_r, others;  // true: it divides
-  };
-  static bool is_product(RealOp op) {
-    return op == RealOp::multiply || op == RealOp::divide || op == RealOp::negate;
-  }
-  void gather(NodeId id, bool divides, Factors& to) const {
-    const RealNode& node = graph_.at(id);
-    if (node.op == RealOp::constant) {
-      to.constant *= divides ? 1 / node.value : node.value;
-    } else if (of_r(id)) {
-      to.of_r.emplace_back(id, divides);
-    } else if (node.op == RealOp::negate) {
-      to.constant = -to.constant;
-      gather(node.of[0], divides, to);
-    } else if (is_product(node.op)) {
-      gather(node.of[0], divides, to);
-      gather(node.of[1], divides != (node.op == RealOp::divide), to);
-    } else {
-      to.others.emplace_back(id, divides);
-    }
-  }
-
-  Scaled made(NodeId id, double unit) {
-    const RealNode& node = graph_.at(id);
-    if (node.op == RealOp::constant) return Scaled::of(node.value);
-    if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
-    if (of_r(id) && !is_truth(node.op)) return table({{id, false}}, unit);
-    const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
-    switch (node.op) {
-      case RealOp::input:
-        return input_(node.input);
-      case RealOp::add:
-        return integers_.add(of(0, unit), of(1, unit));
-      case RealOp::subtract:
-        if (is_relative(node)) return relative_(graph_.at(node.of[0]).input.index);
-        return integers_.subtract(of(0, unit), of(1, unit));
-      case RealOp::multiply:
-      case RealOp::divide:
-      case RealOp::negate:
-        return product(id, unit);
-      case RealOp::absolute:
-        return integers_.absolute(of(0));
-      case RealOp::least:
-      case RealOp::most:
-        return integers_.chosen(node.op == RealOp::least, of(0), of(1));
-      case RealOp::below:
-      case RealOp::at_most:
-        return integers_.below(of(0), of(1), node.op == RealOp::at_most);
-      case RealOp::equal:
-        return integers_.equal(of(0), of(1));
-      case RealOp::both:
-        return integers_.both(of(0), of(1));
-      case RealOp::either:
-        return integers_.either(of(0), of(1));
-      case RealOp::inverse:
-        return integers_.inverse(of(0));
-      case RealOp::select:
-        return integers_.select(of(0), of(1), of(2));
-      case RealOp::power:
-      default:
-        return of_one(node, of(0));
-    }
-  }
-  // v_j - v_i of one axis.
-  bool is_relative(const RealNode& node) const {
-    const RealNode &a = graph_.at(node.of[0]), &b = graph_.at(node.of[1]);
-    return relative_ && node.op == RealOp::subtract && a.op == RealOp::input && b.op == RealOp::input &&
-           a.input.source == Source::other_velocity && b.input.source == Source::own_velocity &&
-           a.input.index == b.input.index;
-  }
-  static bool is_truth(RealOp op) {
-    return op == RealOp::below || op == RealOp::at_most || op == RealOp::equal || op == RealOp::both ||
-           op == RealOp::either || op == RealOp::inverse;
-  }
-
-  // One table for all that depends on r, last, in what is left of the unit.
-  Scaled product(NodeId id, double unit) {
-    Factors factors;
-    gather(id, false, factors);
-    if (!std::isfinite(factors.constant)) refuse("the rule divides by 0");
-    Scaled all = Scaled::of(factors.constant);
-    for (const auto& [of, divides] : factors.others) {
-      const Scaled x = value(of);
-      all = integers_.multiply(all, divides ? of_one({RealOp::divide, {}, 0, {}}, x) : x);
-    }
-    if (factors.of_r.empty()) return all;
-    if (all.constant() && all.number == 0) return all;
-    const double left = all.constant() ? unit / std::abs(all.number) : unit / all.unit;
-    return integers_.multiply(all, table(factors.of_r, left));
-  }
-  // A function of one value that is no function of r: by a table of 14 octaves below the value's largest.
-  Scaled of_one(const RealNode& node, const Scaled& a) {
-    if (!a.constant() && b_.range(a.node).low < 0)
-      refuse(
-          "a root, a power, a quotient, exp, log, sin or cos of what may be negative is not in integers yet");
-    const double exponent = node.op == RealOp::power ? graph_.at(node.of[1]).value : 0;
-    const auto f = [&](double x) {
-      return node.op == RealOp::divide ? 1 / x : applied(node.op, x, exponent, 0);
-    };
-    if (a.constant()) return Scaled::of(f(a.number));
-    const double most = std::ldexp(a.unit, -a.frac) * static_cast<double>(b_.range(a.node).high);
-    return integers_.function(a, f, std::ldexp(most, -14), most, 0);
-  }
-
-  // Of a product of what depends on r alone; the axes of a vector share it.
-  Scaled table(const std::vector<std::pair<NodeId, bool>>& factors, double unit) {
-    const auto [at, fresh] = tables_.try_emplace({factors, unit});
-    if (fresh)
-      at->second = fitted(
-          [&](double r2) {
-            double made = 1;
-            for (const auto& [of, divides] : factors) {
-              const double x = radial_->at(of, r2);
-              made *= divides ? 1 / x : x;
-            }
-            return made;
-          },
-          unit);
-    return at->second;
-  }
-  // From where the function is not too steep. Nearer pairs are a fault, not a wrong force.
-  Scaled fitted(const std::function<double(double)>& f, double unit) {
-    double usual = 0;
-    constexpr int kSamples = 64;
-    const auto at = [&](double part) { return f(part * part * reach2_); };
-    for (int k = 0; k <= kSamples; ++k)
-      usual = std::max(usual, std::abs(at(kFurther + (1 - kFurther) * k / kSamples)));
-    double from = kFurther;
-    while (from > kNearest && std::isfinite(at(0.97 * from)) &&
-           std::abs(at(0.97 * from)) <= kSteepest * usual)
-      from *= 0.97;
-    const Scaled of_r2 = r2_;
-    const double core2 = from > kNearest ? from * from * reach2_ : 0;
-    const auto kept = [&](double r2) {
-      return f(std::max(r2, std::max(core2, kNearest * kNearest * reach2_)));
-    };
-    Scaled value =
-        integers_.function(of_r2, kept, std::max(core2, kNearest * kNearest * reach2_), reach2_, unit);
-    if (core2 > 0) value.node = guarded(value.node, core2);
-    return value;
-  }
-  int guarded(int node, double core2) {
-    constexpr int64_t kBeyond = int64_t{1} << 27;
-    const int core = integers_.node_in(Scaled::of(core2), r2_.unit, r2_.frac);
-    const int near = b_.lt(r2_.node, core);
-    return b_.check(b_.select(near, b_.constant(kBeyond), node), 28, Fault::strength, b_.when());
-  }
-
-  const RealGraph& graph_;
-  Builder& b_;
-  Integers integers_;
-  std::function<Scaled(const RealInput&)> input_;
-  std::function<Scaled(uint32_t)> relative_;
-  std::vector<std::optional<Scaled>> made_;
-  std::map<std::pair<std::vector<std::pair<NodeId, bool>>, double>, Scaled> tables_;
-  const Radial* radial_ = nullptr;
-  Scaled r2_;
-  double reach2_ = 0;
-};
+constexpr int kFieldBits = 46;  // of a field that goes on
+constexpr int kSumBits = 50;    // of a sum
 
 class Program {
  public:
-  Program(const RuleProgram& rule, const FixedRule& base, int capacity,
-          const std::vector<std::vector<double>>& start)
+  Program(const RuleProgram& rule, const FixedRule& base, int capacity, const ProgramStart& start)
       : rule_(rule), base_(base), start_(start) {
-    if (rule.declaration.bonds == BondRange::reference)
-      refuse("bonds that keep what they hold are not in integers yet");
     out_.program = begun_program(rule.declaration.name, base, capacity);
     fields();
+    if (rule.declaration.bonds == BondRange::reference) begin_bonds();
     for (size_t k = 0; k < rule.rounds.size(); ++k) add_round(k);
   }
 
   IntegerProgram take() {
+    if (frame_) out_.rows = frame_->rows(start_.rows);
+    refuse_writes_of_one_end();
     check(out_.program);
     return std::move(out_);
   }
@@ -312,6 +47,17 @@ class Program {
     return {-(int64_t{1} << (bits - 1)), (int64_t{1} << (bits - 1)) - 1};
   }
 
+  struct Format {
+    graph::Interval room;
+    int frac = 0;
+  };
+  static Format format_of(Value::Kind kind, double low, double high) {
+    if (kind == Value::Kind::truth) return {{0, 1}, 0};
+    int exponent = 0;
+    std::frexp(std::max({std::abs(low), std::abs(high), 1e-300}), &exponent);
+    return {of_bits(kFieldBits), kFieldBits - 1 - exponent};
+  }
+
   // Fields that a round makes have the range that the text gives; others that of what they begin with.
   void fields() {
     place_.assign(rule_.particle_numbers, -1);
@@ -319,18 +65,23 @@ class Program {
       const ProgramField& field = rule_.particle[k];
       if (field.name == kForceField) continue;
       const auto [low, high] = range_of(field);
-      const double size = std::max({std::abs(low), std::abs(high), 1e-300});
-      int exponent = 0;
-      std::frexp(size, &exponent);
-      const int frac = field.kind == Value::Kind::truth ? 0 : kFieldBits - 1 - exponent;
-      const graph::Interval room =
-          field.kind == Value::Kind::truth ? graph::Interval{0, 1} : of_bits(kFieldBits);
+      auto [room, frac] = format_of(field.kind, low, high);
+      if (!is_made(field)) room = held_by(field, frac);
       out_.program.fields.push_back({field.name, static_cast<int>(field.numbers()), room, frac});
       out_.scales.push_back({1, frac});
       out_.field.push_back(k);
       for (uint32_t n = 0; n < field.numbers(); ++n)
         place_[field.first + n] = static_cast<int>(out_.program.fields.size()) - 1;
     }
+  }
+  // What a field that no round makes has of its format.
+  graph::Interval held_by(const ProgramField& field, int frac) const {
+    double low = INFINITY, high = -INFINITY;
+    for (uint32_t n = 0; n < field.numbers(); ++n)
+      for (const double value : start_.particle[field.first + n])
+        low = std::min(low, value), high = std::max(high, value);
+    if (low > high) low = high = 0;
+    return {std::llround(std::ldexp(low, frac)), std::llround(std::ldexp(high, frac))};
   }
   bool is_made(const ProgramField& field) const {
     return std::ranges::any_of(rule_.rounds, [&](const ProgramRound& round) {
@@ -341,11 +92,11 @@ class Program {
   std::pair<double, double> range_of(const ProgramField& field) const {
     if (field.range) return *field.range;
     if (is_made(field) && field.kind != Value::Kind::truth)
-      refuse(fmt::format("integers need the 'range' of the field '{}'", field.name),
-             "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
+      refuse_rule(fmt::format("integers need the 'range' of the field '{}'", field.name),
+                  "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
     double low = 0, high = 0;
     for (uint32_t n = 0; n < field.numbers(); ++n)
-      for (const double value : start_[field.first + n])
+      for (const double value : start_.particle[field.first + n])
         low = std::min(low, value), high = std::max(high, value);
     return {low, high};
   }
@@ -373,14 +124,15 @@ class Program {
     return Integers::scaled(node, base_.widths.velocity_frac(), base_.cell_edge / base_.dt);
   }
 
-  // As the pair law has it: a difference that does not fit is a fault.
-  Scaled relative_velocity(Builder& b, uint32_t axis) const {
+  // As the pair law has it: a difference that does not fit is a fault. `counts`: where it is one; -1:
+  // anywhere.
+  Scaled relative_velocity(Builder& b, uint32_t axis, int counts) const {
     if (static_cast<int>(axis) >= base_.axes) return Scaled::of(0);
     const auto a = static_cast<int>(axis);
     const int apart = b.sub(graph::read_velocity(b, out_.program, graph::Source::other_v, a),
                             graph::read_velocity(b, out_.program, graph::Source::own_v, a));
-    const int w =
-        b.check(b.round(apart, base_.w_shift), base_.widths.relative_velocity_bits, Fault::relative_velocity);
+    const int w = b.check(b.round(apart, base_.w_shift), base_.widths.relative_velocity_bits,
+                          Fault::relative_velocity, counts);
     return Integers::scaled(w, base_.widths.relative_velocity_frac, base_.cell_edge / base_.dt);
   }
 
@@ -394,25 +146,137 @@ class Program {
     graph::Round round;
     round.name = from.name;
     Builder b;
-    std::vector<int> d;
-    for (int a = 0; a < base_.axes; ++a)
-      d.push_back(b.named(b.round(read_apart(b, out_.program, a), base_.difference_shift), "d"));
-    const int r2 = b.named(b.dot(d, d), "r2");
-    const int D = base_.widths.difference_frac;
-    b.counts(b.named(b.lt(r2, b.constant(static_cast<int64_t>(base_.cutoff2), 2 * D)), "when"));
+    std::vector<int> d = differences(b);
+    const int r2 = b.named(b.dot(d, d), "r2"), D = base_.widths.difference_frac;
+    b.counts(frame_ ? b.constant(1)
+                    : b.named(b.lt(r2, b.constant(static_cast<int64_t>(base_.cutoff2), 2 * D)), "when"));
     for (int& part : d) part = b.within(part);
-    const Radial radial(from.pair);
-    const double edge = base_.cell_edge;
+    const Radial radial(from.pair, frame_ ? &frame_->classes() : nullptr);
+    const Scaled square = Integers::scaled(b.within(r2), 2 * D, base_.cell_edge * base_.cell_edge);
     Lowering pair(from.pair, b, [&](const RealInput& input) { return pair_input(b, input, d); });
-    pair.relative([&](uint32_t axis) { return relative_velocity(b, axis); });
-    pair.pairs(radial, Integers::scaled(b.within(r2), 2 * D, edge * edge), rule_.reach * rule_.reach);
-    const std::vector<SumScale> scales = add_terms(k, pair, b, round);
+    std::optional<BondGraph> bond;
+    if (frame_) {
+      pair.bonds(radial, square, bond.emplace(*frame_, b, r2));
+      lasting_ = b.negate(broken(b));
+    } else {
+      pair.pairs(radial, square, rule_.reach * rule_.reach);
+    }
+    pair.relative([&](uint32_t axis) { return relative_velocity(b, axis, frame_ ? lasting_ : -1); });
+    if (bond) write_bonds(k, pair, *bond, b, round);
+    const std::vector<SumScale> scales = add_terms(k, pair, bond ? &*bond : nullptr, b, round);
     round.when = b.when();
     round.pair = b.take();
     out_.tables.push_back(pair.integers().fits());
     add_finish(k, scales, round);
     out_.program.rounds.push_back(std::move(round));
   }
+  // A bond that counts is no longer than a cell; of any other d is cut off, so that r2 has 2 D + 3 bits.
+  std::vector<int> differences(Builder& b) const {
+    std::vector<int> d;
+    const int64_t most = (int64_t{5} << base_.widths.difference_frac) / 4;
+    for (int a = 0; a < base_.axes; ++a) {
+      d.push_back(b.named(b.round(read_apart(b, out_.program, a), base_.difference_shift), "d"));
+      if (frame_) d.back() = b.clamp(d.back(), {-most, most});
+    }
+    return d;
+  }
+
+  // Bonds that last, and what they keep.
+  void begin_bonds() {
+    out_.program.bonded = true;
+    out_.program.partners = static_cast<int>(graph::BondRows{start_.rows.first, {}, {}, {}}.longest());
+    classes_.emplace(rule_, start_);
+    frame_.emplace(*classes_, base_, out_.program);
+    out_.lengths = classes_->lengths2().size();
+    bond_place_.assign(rule_.bond_numbers, -1);
+    for (size_t k = 0; k < rule_.bond.size(); ++k) {
+      const ProgramField& field = rule_.bond[k];
+      if (classes_->fixed({Source::bond_field, field.first})) continue;
+      if (!field.range && field.kind != Value::Kind::truth)
+        refuse_rule(fmt::format("integers need the 'range' of the bonds' field '{}'", field.name),
+                    "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
+      const auto [low, high] = field.range.value_or(std::pair(0.0, 1.0));
+      const auto [room, frac] = format_of(field.kind, low, high);
+      check_ends(field, std::max(std::abs(low), std::abs(high)));
+      for (uint32_t n = 0; n < field.numbers(); ++n)
+        bond_place_[field.first + n] = static_cast<int>(out_.program.bonds.size());
+      out_.program.bonds.push_back({field.name, static_cast<int>(field.numbers()), room, frac});
+      out_.bond_scales.push_back({1, frac});
+      out_.bond_field.push_back(k);
+    }
+    if (!broken_for_ever(rule_)) return;
+    Builder b;
+    out_.program.broken_at = lowered_broken(b);
+    out_.program.broken = b.take();
+  }
+  void check_ends(const ProgramField& field, double most) const {
+    constexpr double kSame = 1e-9;
+    const graph::BondRows rows{start_.rows.first, start_.rows.other, {}, {}};
+    for (uint32_t i = 0; i < start_.rows.particles(); ++i)
+      for (uint64_t b = rows.first[i]; b < rows.first[i + 1]; ++b)
+        for (uint32_t n = field.first; n < field.first + field.numbers(); ++n)
+          if (std::abs(start_.bond[n][b] - start_.bond[n][rows.twin(i, b)]) > kSame * most)
+            refuse_rule(
+                fmt::format("'{}' of the bond of particles {} and {} begins as another number at either end",
+                            field.name, i, rows.other[b]),
+                "a start that both ends see alike; engine reference runs it");
+  }
+  int lowered_broken(Builder& b) {
+    Lowering lowering(rule_.broken, b, [&](const RealInput& input) { return read_bond(b, input.index); });
+    const Scaled truth = lowering.value(*rule_.broken_at);
+    return truth.constant() ? b.constant(truth.number != 0 ? 1 : 0) : truth.node;
+  }
+  int broken(Builder& b) { return out_.program.broken_at < 0 ? b.constant(0) : lowered_broken(b); }
+  Scaled read_bond(Builder& b, uint32_t number) {
+    const int field = bond_place_[number];
+    if (field < 0) {
+      std::vector<double> by_class;
+      for (size_t c = 0; c < classes_->size(); ++c)
+        by_class.push_back(classes_->at(c, {Source::bond_field, number}));
+      return frame_->read(b, by_class, "constant");
+    }
+    const auto component = number - rule_.bond[out_.bond_field[static_cast<size_t>(field)]].first;
+    const int node = graph::read_bond(b, out_.program, field, static_cast<int>(component));
+    return {node, 0, out_.bond_scales[static_cast<size_t>(field)].frac, 1};
+  }
+
+  void write_bonds(size_t k, Lowering& pair, BondGraph& bond, Builder& b, graph::Round& round) {
+    for (const ProgramWrite& write : rule_.rounds[k].bonds) {
+      const auto field = static_cast<size_t>(bond_place_[write.number]);
+      const graph::Field& to = out_.program.bonds[field];
+      int node = pair.integers().node_in(pair.value(write.node), 1, to.frac);
+      if (to.range != graph::Interval{0, 1}) node = b.check(node, kFieldBits, Fault::sum, lasting_);
+      Scaled value{node, 0, to.frac, 1};
+      if (pair.needs_window(write.node))
+        value = pair.integers().select(bond.inside(lasting_), value, read_bond(b, write.number));
+      const auto component = write.number - rule_.bond[out_.bond_field[field]].first;
+      round.bond_writes.push_back(
+          {static_cast<int>(field), static_cast<int>(component), b.named(value.node, to.name)});
+      pair.replace(write.node, value);
+    }
+  }
+  // Where a term counts: bonds that do are within their tables.
+  Scaled counted(Lowering& pair, BondGraph* bond, Builder& b, NodeId when, NodeId term) {
+    const Scaled truth = pair.value(when);
+    if (bond == nullptr) return truth;
+    if (pair.needs_window(when)) return pair.integers().both(truth, bond->inside(lasting_));
+    if (!pair.needs_window(term)) return truth;
+    const int counts = truth.constant() ? b.constant(truth.number != 0 ? 1 : 0) : truth.node;
+    return pair.integers().both(truth, bond->inside(counts));
+  }
+  void refuse_writes_of_one_end() const {
+    for (const graph::Round& round : out_.program.rounds) {
+      const std::vector<graph::Parity> parities = graph::parities_of(round.pair);
+      for (const graph::Write& write : round.bond_writes)
+        if (!graph::is_even(parities[static_cast<size_t>(write.node)]))
+          refuse_rule(
+              fmt::format("the two ends of a bond may write another '{}'",
+                          out_.program.bonds[static_cast<size_t>(write.field)].name),
+              "what both ends see alike: r, r0, the bond's fields, sums of both particles' fields; engine "
+              "reference runs it");
+    }
+  }
+
   Scaled pair_input(Builder& b, const RealInput& input, const std::vector<int>& d) {
     switch (input.source) {
       case Source::difference:
@@ -431,6 +295,10 @@ class Program {
         return read_field(b, graph::Source::own_field, input.index);
       case Source::other_field:
         return read_field(b, graph::Source::other_field, input.index);
+      case Source::bond_field:
+        return read_bond(b, input.index);
+      case Source::made:
+        return Scaled::of(1);
       default:
         return Scaled::of(base_.dt);
     }
@@ -501,13 +369,14 @@ class Program {
         names.push_back(sum.numbers == 1 ? sum.name : fmt::format("{}.{}", sum.name, "xyz"[n]));
     return names;
   }
-  std::vector<SumScale> add_terms(size_t k, Lowering& pair, Builder& b, graph::Round& round) {
+  std::vector<SumScale> add_terms(size_t k, Lowering& pair, BondGraph* bond, Builder& b,
+                                  graph::Round& round) {
     const ProgramRound& from = rule_.rounds[k];
     const int spare = static_cast<int>(std::ceil(std::log2(out_.program.partners + 1)));
     const std::vector<std::string> names = names_of_sums(rule_.declaration.rounds[k]);
     std::vector<SumScale> scales;
     for (size_t n = 0; n < from.terms.size(); ++n) {
-      const Scaled when = pair.value(from.when[n]);
+      const Scaled when = counted(pair, bond, b, from.when[n], from.terms[n]);
       Scaled term;
       if (is_force(k, n)) {
         const int frac = base_.widths.velocity_frac();
@@ -559,17 +428,26 @@ class Program {
       case Source::own_field:
         return read_field(b, graph::Source::own_field, input.index);
       case Source::position:
-        refuse("a finish of integers knows no position: a particle knows its place in its cell alone");
+        refuse_rule("a finish of integers knows no position: a particle knows its place in its cell alone");
       default:
         return Scaled::of(base_.dt);
     }
   }
+  // A value that is to be a field, in its own unit: what the field cannot hold is no reason to coarsen it.
+  static Scaled checked(Builder& b, const Scaled& value, int frac) {
+    if (value.constant() || value.unit == 1) return value;
+    const int width = kFieldBits + value.frac - frac;
+    if (width < 2 || width > 62) return value;
+    return {b.check(value.node, width, Fault::sum), 0, value.frac, value.unit};
+  }
   void write_field(Lowering& finish, Builder& b, const ProgramWrite& write, graph::Round& round) {
     const int field = place_[write.number];
     const graph::Field& to = out_.program.fields[static_cast<size_t>(field)];
-    const Scaled value = finish.value(write.node);
+    const bool number = to.range != graph::Interval{0, 1};
+    Scaled value = finish.value(write.node);
+    if (number) value = checked(b, value, to.frac);
     int node = finish.integers().node_in(value, 1, to.frac);
-    if (to.range != graph::Interval{0, 1}) node = b.check(node, kFieldBits, Fault::sum);
+    if (number) node = b.check(node, kFieldBits, Fault::sum);
     const auto component = write.number - rule_.particle[out_.field[static_cast<size_t>(field)]].first;
     round.writes.push_back({field, static_cast<int>(component), b.named(node, to.name)});
   }
@@ -595,17 +473,41 @@ class Program {
 
   const RuleProgram& rule_;
   const FixedRule& base_;
-  const std::vector<std::vector<double>>& start_;
+  const ProgramStart& start_;
   IntegerProgram out_;
-  std::vector<int> place_;  // [number of a particle field]: its field of the program; -1: the force
-  int mass_ = -1;           // the type constant
+  std::optional<BondClasses> classes_;  // of bonds that last
+  std::optional<BondFrame> frame_;
+  std::vector<int> bond_place_;  // [number of a bond's field]: its field of the program; -1: it never changes
+  int lasting_ = -1;             // of the graph of a bond: it counts
+  std::vector<int> place_;       // [number of a particle field]: its field of the program; -1: the force
+  int mass_ = -1;                // the type constant
 };
 
 }  // namespace
 
 IntegerProgram integer_program(const RuleProgram& rule, const FixedRule& base, int capacity,
-                               const std::vector<std::vector<double>>& start) {
+                               const ProgramStart& start) {
   return Program(rule, base, capacity, start).take();
+}
+
+std::vector<int64_t> bond_numbers(const IntegerProgram& program, const RuleProgram& rule,
+                                  const ProgramStart& start) {
+  std::vector<int64_t> all;
+  if (!program.rows) return all;
+  const graph::BondRows& rows = *program.rows;
+  for (uint32_t i = 0; i + 1 < rows.first.size(); ++i)
+    for (uint64_t b = rows.first[i]; b < rows.first[i + 1]; ++b) {
+      const uint64_t of = i < rows.other[b] ? b : rows.twin(i, b);
+      for (size_t f = 0; f < program.bond_field.size(); ++f) {
+        const ProgramField& field = rule.bond[program.bond_field[f]];
+        const graph::Interval range = program.program.bonds[f].range;
+        for (uint32_t n = 0; n < field.numbers(); ++n)
+          all.push_back(std::clamp<int64_t>(
+              std::llround(std::ldexp(start.bond[field.first + n][of], program.bond_scales[f].frac)),
+              range.low, range.high));
+      }
+    }
+  return all;
 }
 
 }  // namespace cuboct

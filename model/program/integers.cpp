@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "model/program/fit_table.h"
-
 namespace cuboct {
 namespace {
 
@@ -186,9 +184,15 @@ Scaled Integers::function(const Scaled& a, const std::function<double(double)>& 
   const Scaled values = scaled(0, 0, unit > 0 ? unit : 1);
   const FittedTable fitted =
       fit_table({.bits = bits_of(x), .step = step, .from = from, .to = to, .unit = values.unit}, f);
+  return looked_up(fitted, values.unit, x.node);
+}
+
+Scaled Integers::looked_up(const FittedTable& fitted, double unit, int argument, int law) {
+  const size_t before = b_.graph().tables.size();
   const int table = b_.table(fitted.table);
-  fits_.push_back({fitted.largest > 0 ? fitted.worst / fitted.largest : 0, fitted.table.c0.size()});
-  return {b_.lookup(table, x.node), 0, fitted.table.value_frac, values.unit};
+  if (b_.graph().tables.size() > before)
+    fits_.push_back({fitted.largest > 0 ? fitted.worst / fitted.largest : 0, fitted.table.c0.size()});
+  return {b_.lookup(table, argument, law), 0, fitted.table.value_frac, unit};
 }
 
 }  // namespace cuboct

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/graph/builder.h"
+#include "model/program/fit_table.h"
 
 namespace cuboct {
 
@@ -48,6 +49,9 @@ class Integers {
   // `from`: where it begins, below which it is worth what it is there. f is asked up to `to`.
   Scaled function(const Scaled& a, const std::function<double(double)>& f, double from, double to,
                   double unit);
+
+  // A table's values, which count in `unit`. `law`: -1 where it has one.
+  Scaled looked_up(const FittedTable& fitted, double unit, int argument, int law = -1);
 
   // At most so many bits beside the sign.
   Scaled narrow(const Scaled& a, int bits);

@@ -107,7 +107,7 @@ class ProgramTerms final : public RoundsTerms {
     keeps ? lay_down() : take_up();
   }
   const std::vector<Vec3>& force() const override { return force_; }
-  const std::vector<std::vector<double>>& fields() const { return work_; }
+  ProgramStart now() const { return {work_, bonds_, bond_}; }
 
   double energy() const override {
     double sum = 0;
@@ -425,13 +425,13 @@ std::unique_ptr<RoundsTerms> ProgramRule::bind(const Rule& rule, const Body& bod
   return terms;
 }
 
-std::vector<std::vector<double>> starts_of(const RuleProgram& program, const Rule& rule, const Body& body,
-                                           const Periodic& periodic) {
+ProgramStart starts_of(const RuleProgram& program, const Rule& rule, const Body& body,
+                       const Periodic& periodic) {
   Body packed = body;
   if (body.bonds) packed.x = body.bonds->packed;
   ProgramTerms terms(program, rule, packed, periodic);
   recall_bonds(terms, body);
-  return terms.fields();
+  return terms.now();
 }
 
 }  // namespace cuboct

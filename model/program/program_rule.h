@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "model/program/program_start.h"
 #include "model/program/rule_program.h"
 #include "model/rules/rounds_rule.h"
 
@@ -30,9 +31,8 @@ class ProgramRule final : public RoundsRule {
   RuleProgram program_;
 };
 
-// What the particle fields of a rule's text begin with, by number, by particle: of the body as packed, or
-// what Body::bonds kept.
-std::vector<std::vector<double>> starts_of(const RuleProgram& program, const Rule& rule, const Body& body,
-                                           const Periodic& periodic);
+// What the fields of a rule's text begin with.
+ProgramStart starts_of(const RuleProgram& program, const Rule& rule, const Body& body,
+                       const Periodic& periodic);
 
 }  // namespace cuboct

@@ -29,8 +29,8 @@ using MakeIntegerEngine = std::function<std::unique_ptr<IntegerEngine>(const Sta
 class GoldenIntegers final : public IntegerEngine {
  public:
   GoldenIntegers(const graph::FixedProgram& program, const Lattice& lattice, int capacity,
-                 const State& initial)
-      : lattice_(lattice), golden_(program, lattice, capacity, initial) {}
+                 const State& initial, std::shared_ptr<const graph::BondRows> rows = nullptr)
+      : lattice_(lattice), golden_(program, lattice, capacity, initial, std::move(rows)) {}
 
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
     for (; steps > 0; --steps) {

@@ -8,6 +8,7 @@
 #include "model/base/error.h"
 #include "model/program/program_rule.h"
 #include "model/real/real_engine.h"
+#include "model/run/bond_counters.h"
 
 namespace cuboct {
 namespace {
@@ -22,25 +23,27 @@ double real_of(const FieldScale& scale, int64_t number) {
 State state_with_fields(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step) {
   State state = to_fixed(body, setting.fixed, setting.lattice, setting.origin);
   state.step = step;
-  const auto starts = starts_of(text_of(scene), scene.rule, body, scene.periodic);
+  const ProgramStart start = starts_of(text_of(scene), scene.rule, body, scene.periodic);
   const IntegerProgram& program = setting.program;
   for (const Particle& particle : state.particles)
     for (size_t f = 0; f < program.field.size(); ++f) {
       const ProgramField& field = text_of(scene).particle[program.field[f]];
       const graph::Interval range = program.program.fields[f].range;
       for (uint32_t n = 0; n < field.numbers(); ++n) {
-        const double value = starts[field.first + n][particle.id] / program.scales[f].unit;
+        const double value = start.particle[field.first + n][particle.id] / program.scales[f].unit;
         state.fields.push_back(std::clamp<int64_t>(std::llround(std::ldexp(value, program.scales[f].frac)),
                                                    range.low, range.high));
       }
     }
+  state.bonds = bond_numbers(program, text_of(scene), start);
   return state;
 }
 
 std::unique_ptr<IntegerEngine> made(const ProgramSetting& setting, const State& state,
                                     const MakeIntegerEngine& make) {
   if (make) return make(state);
-  return std::make_unique<GoldenIntegers>(setting.program.program, setting.lattice, setting.capacity, state);
+  return std::make_unique<GoldenIntegers>(setting.program.program, setting.lattice, setting.capacity, state,
+                                          setting.program.rows);
 }
 
 }  // namespace
@@ -61,14 +64,17 @@ IntegerRun::IntegerRun(const Scene& scene, const ProgramSetting& setting, const 
   stale_ = true;
 }
 
-State state_of_checkpoint(State particles, const graph::FixedProgram& program,
+State state_of_checkpoint(State particles, const IntegerProgram& program,
                           const std::vector<uint64_t>& memory) {
-  const auto numbers = static_cast<size_t>(program.numbers());
-  if (memory.size() != numbers * particles.particles.size())
+  const auto numbers = static_cast<size_t>(program.program.numbers());
+  const size_t fields = numbers * particles.particles.size();
+  const size_t bonds = program.rows ? program.rows->other.size() : 0;
+  if (memory.size() != fields + bonds * static_cast<size_t>(program.program.bond_numbers()))
     throw InputError("the checkpoint does not hold the fields of this rule");
   for (const Particle& particle : particles.particles)
     for (size_t f = 0; f < numbers; ++f)
       particles.fields.push_back(static_cast<int64_t>(memory[particle.id * numbers + f]));
+  particles.bonds.assign(memory.begin() + static_cast<ptrdiff_t>(fields), memory.end());
   return particles;
 }
 
@@ -86,6 +92,13 @@ void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   look();
 }
 
+EngineMemory IntegerRun::memory() {
+  const State state = program_->state();
+  std::vector<uint64_t> numbers(state.fields.begin(), state.fields.end());
+  numbers.insert(numbers.end(), state.bonds.begin(), state.bonds.end());
+  return {{}, std::move(numbers)};
+}
+
 Momentum IntegerRun::momentum() {
   return {cuboct::momentum(setting_.fixed, program_->state()), RoundsRun::momentum().real};
 }
@@ -95,22 +108,44 @@ void IntegerRun::renew() {
   const State state = program_->state();
   body_ = with_bonds(scene_.rule, to_real(state, setting_.fixed, setting_.lattice, setting_.origin), body_);
   const IntegerProgram& program = setting_.program;
-  const auto numbers = static_cast<size_t>(program.program.numbers());
-  std::vector<uint64_t> kept;
-  for (size_t f = 0, place = 0; f < program.field.size(); ++f) {
+  std::vector<uint64_t> kept = engine_->terms()->memory();
+  auto to = kept.begin();
+  // The numbers of a field, where it goes on: of the particles, or of the bonds, one number after another.
+  const auto recall = [&](const ProgramField& field, const FieldScale& scale,
+                          const std::vector<int64_t>& from, size_t place, size_t stride) {
+    for (uint32_t n = 0; n < field.numbers(); ++n)
+      for (size_t k = place + n; k < from.size(); k += stride)
+        *to++ = std::bit_cast<uint64_t>(real_of(scale, from[k]));
+  };
+  for (size_t f = 0; f < program.field.size(); ++f) {
     const ProgramField& field = text_of(scene_).particle[program.field[f]];
-    for (uint32_t n = 0; n < field.numbers(); ++n, ++place) {
-      if (!field.kept) continue;
-      for (size_t i = 0; i < state.particles.size(); ++i)
-        kept.push_back(
-            std::bit_cast<uint64_t>(real_of(program.scales[f], state.fields[i * numbers + place])));
-    }
+    if (field.kept)
+      recall(field, program.scales[f], state.fields,
+             static_cast<size_t>(program.program.place(static_cast<int>(f))),
+             static_cast<size_t>(program.program.numbers()));
+  }
+  for (size_t k = 0; program.rows && k < text_of(scene_).bond.size(); ++k) {
+    const ProgramField& field = text_of(scene_).bond[k];
+    const auto at = std::ranges::find(program.bond_field, k);
+    const auto f = at - program.bond_field.begin();
+    if (at != program.bond_field.end())
+      recall(field, program.bond_scales[static_cast<size_t>(f)], state.bonds,
+             static_cast<size_t>(program.program.bond_place(static_cast<int>(f))),
+             static_cast<size_t>(program.program.bond_numbers()));
+    else if (field.kept)
+      to += static_cast<ptrdiff_t>(field.numbers() * program.rows->other.size());
   }
   engine_->place(body_);
   engine_->recall(kept);
 }
 
-Counters IntegerRun::counters() { return program_->counters(); }
+Counters IntegerRun::counters() {
+  Counters counters = program_->counters();
+  if (!setting_.program.rows) return counters;
+  body();
+  add_bonds(counters, scene_.rule, *engine_->terms(), body_.size());
+  return counters;
+}
 
 Notes IntegerRun::notes() { return {{"rule", rounds_of(scene_.rule)->declaration().name}}; }
 

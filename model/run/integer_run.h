@@ -37,21 +37,17 @@ class IntegerRun final : public RoundsRun {
   void for_each_slot(const std::function<void(const Particle&)>& see) override {
     program_->for_each_slot(see);
   }
-  // The fields of all particles by id.
-  EngineMemory memory() override { return {{}, whole(program_->state().fields)}; }
+  // The fields of all particles by id, then the numbers of all bonds.
+  EngineMemory memory() override;
 
  private:
   void renew() override;
-  static std::vector<uint64_t> whole(const std::vector<int64_t>& numbers) {
-    return {numbers.begin(), numbers.end()};
-  }
-
   ProgramSetting setting_;
   std::unique_ptr<IntegerEngine> program_;
 };
 
 // The state that a checkpoint holds: `particles` in the order of their slots, `memory` as IntegerRun left it.
-State state_of_checkpoint(State particles, const graph::FixedProgram& program,
+State state_of_checkpoint(State particles, const IntegerProgram& program,
                           const std::vector<uint64_t>& memory);
 
 }  // namespace cuboct

@@ -182,6 +182,7 @@ TEST(Program, ThatDoesNotHoldTogetherIsRefused) {
             "the velocity lies in [-1024, 1023], beyond [-1024, 7]");
   EXPECT_EQ(refusal([](auto& p) { p.motion.v.pop_back(); }), "the motion has one node for each axis");
   EXPECT_EQ(refusal([](auto& p) {
+              p.bonded = true;
               p.bonds = {{"whole", 1, {-4096, 4096}, 0}};
               const auto& nodes = p.rounds[0].pair.nodes;
               const auto is_input = [](const graph::Node& node) { return node.op == graph::Op::input; };

@@ -6,60 +6,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "model/base/error.h"
-#include "model/contract/quantise.h"
 #include "model/graph/certificate.h"
 #include "model/graph/parity.h"
-#include "model/program/integer_program.h"
-#include "model/program/program_rule.h"
-#include "model/run/integer_run.h"
-#include "model/scene/scene.h"
+#include "tests/rules/in_integers.h"
 
 namespace cuboct {
 namespace {
-
-const std::string kIntegerTexts = CUBOCT_SOURCE_DIR "/scenes/rules/";
-
-// A scene's rule in integers, with cells of its reach.
-struct InIntegers {
-  explicit InIntegers(const std::string& text, int capacity = 16)
-      : scene(parse_scene(text, kIntegerTexts + "test.toml")), room(capacity) {
-    const Rule& rule = scene.rule;
-    const double edge = rule.cutoff();
-    Widths widths;
-    widths.position_frac = 28, widths.guard = 10, widths.difference_frac = 23;
-    widths.relative_velocity_frac = 30, widths.relative_velocity_bits = 27;
-    widths.velocity_bits = widths.sum_bits = widths.displacement_bits = 39;
-    fixed = quantise_without_law(rule, edge, widths);
-    Vec3 low = Vec3::Constant(INFINITY), high = -low;
-    for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-    origin = low.array() - 1.25 * edge;
-    Cell count{};
-    for (int a = 0; a < 3; ++a) count[a] = static_cast<int32_t>(std::ceil((high[a] - origin[a]) / edge)) + 1;
-    std::vector<Cell> cells;
-    for (int32_t z = 0; z < count[2]; ++z)
-      for (int32_t y = 0; y < count[1]; ++y)
-        for (int32_t x = 0; x < count[0]; ++x) cells.push_back({x, y, z});
-    lattice = Lattice(std::move(cells), Cell{});
-    program = integer_program(*rounds_of(rule)->text(), fixed, capacity,
-                              starts_of(*rounds_of(rule)->text(), rule, scene.body, scene.periodic));
-  }
-  IntegerRun run() const { return {scene, scene.body, {program, fixed, lattice, origin, room}}; }
-
-  Scene scene;
-  FixedRule fixed;
-  Lattice lattice;
-  Vec3 origin;
-  IntegerProgram program;
-  int room;
-};
-
-std::string small_block(const std::string& run) {
-  return "density = \"7.8 g/cm^3\"\n"
-         "packing = { pitch = \"1 mm\" }\n"
-         "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[6, 3, 3] mm\" }\n" +
-         run;
-}
 
 const std::string kHeatText = small_block("run = { dt = \"5 ms\", steps = 10 }\n") +
                               "[rule]\nfile = \"texts/heat.toml\"\n"
@@ -169,20 +121,8 @@ TEST(IntegerProgram, PairsNearerThanATableReachesAreAFault) {
   EXPECT_EQ(fault, Fault::strength);
 }
 
-std::string integer_refusal(const std::string& text) {
-  try {
-    const InIntegers made(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
-}
-
 TEST(IntegerProgram, WhatIntegersDoNotHoldIsRefused) {
   const std::string run = "run = { dt = \"10 ns\", steps = 10 }\n";
-  EXPECT_NE(integer_refusal(small_block(run) + "[rule]\nfile = \"texts/glass.toml\"\n")
-                .find("bonds that keep what they hold"),
-            std::string::npos);
   const std::string own =
       small_block(run) + "[rule]\nreach = \"1.2 * pitch\"\nstill = true\nparticle.a.start = 1\n";
   EXPECT_NE(integer_refusal(own + "[[rule.round]]\nsum.b = \"a_j - a_i\"\nfinish.a = \"a + b\"\n")

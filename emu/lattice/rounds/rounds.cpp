@@ -24,6 +24,9 @@ void check_doubles(const graph::Graph& graph, const std::string& what) {
 
 Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule)
     : program_(program), rule_(rule), once_(std::ranges::all_of(program.rounds, PairPass::is_mutual)) {
+  if (program.bonded)
+    throw InputError("bonds that last are not on the lattice engine yet", "engine golden runs them")
+        .about({"rule.file", "rule"});
   for (const graph::Round& round : program.rounds) {
     check_doubles(round.pair, "a pair of " + round.name);
     check_doubles(round.finish, "the finish of " + round.name);

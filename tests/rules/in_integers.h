@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// A rule that is text in integers, in cells of its own: for tests.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "model/base/error.h"
+#include "model/contract/quantise.h"
+#include "model/program/bond_graph.h"
+#include "model/program/integer_program.h"
+#include "model/program/program_rule.h"
+#include "model/run/integer_run.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+inline const std::string kIntegerTexts = CUBOCT_SOURCE_DIR "/scenes/rules/";
+
+// A scene's rule in integers, with cells of its reach, and of what its bonds stretch to.
+struct InIntegers {
+  explicit InIntegers(const std::string& text, int capacity = 16)
+      : scene(parse_scene(text, kIntegerTexts + "test.toml")), room(capacity) {
+    const Rule& rule = scene.rule;
+    const bool lasting = has_reference_bonds(rule);
+    const double edge = rule.cutoff() * (lasting ? 1 + kBondStretch : 1);
+    Widths widths;
+    widths.position_frac = 28, widths.guard = 10, widths.difference_frac = lasting ? 24 : 23;
+    widths.relative_velocity_frac = 30, widths.relative_velocity_bits = 27;
+    widths.velocity_bits = widths.sum_bits = widths.displacement_bits = 39;
+    fixed = quantise_without_law(rule, edge, widths);
+    Vec3 low = Vec3::Constant(INFINITY), high = -low;
+    for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    origin = low.array() - 1.25 * edge;
+    Cell count{};
+    for (int a = 0; a < 3; ++a) count[a] = static_cast<int32_t>(std::ceil((high[a] - origin[a]) / edge)) + 1;
+    std::vector<Cell> cells;
+    for (int32_t z = 0; z < count[2]; ++z)
+      for (int32_t y = 0; y < count[1]; ++y)
+        for (int32_t x = 0; x < count[0]; ++x) cells.push_back({x, y, z});
+    lattice = Lattice(std::move(cells), Cell{});
+    program = integer_program(*rounds_of(rule)->text(), fixed, capacity,
+                              starts_of(*rounds_of(rule)->text(), rule, scene.body, scene.periodic));
+  }
+  IntegerRun run() const { return {scene, scene.body, {program, fixed, lattice, origin, room}}; }
+
+  Scene scene;
+  FixedRule fixed;
+  Lattice lattice;
+  Vec3 origin;
+  IntegerProgram program;
+  int room;
+};
+
+inline std::string small_block(const std::string& run) {
+  return "density = \"7.8 g/cm^3\"\n"
+         "packing = { pitch = \"1 mm\" }\n"
+         "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[6, 3, 3] mm\" }\n" +
+         run;
+}
+
+inline std::string integer_refusal(const std::string& text) {
+  try {
+    const InIntegers made(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+}  // namespace cuboct
