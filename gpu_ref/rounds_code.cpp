@@ -28,7 +28,7 @@ const Node& node_of(const graph::Graph& graph, int n) { return graph.nodes[index
 bool is_own(Source source) {
   return source != Source::apart && source != Source::other_v && source != Source::other_constant &&
          source != Source::pair_constant && source != Source::other_field && source != Source::other_id &&
-         source != Source::bond_field;
+         source != Source::bond_field && source != Source::bond_constant;
 }
 
 // Nodes that a list needs beside those of another.
@@ -84,10 +84,8 @@ struct Code {
       int number = node.index;
       if (node.source == Source::own_field || node.source == Source::other_field)
         number = program.place(node.index) + node.axis;
+      if (node.source == Source::bond_field) number = program.bond_place(node.index) + node.axis;
       if (node.source == Source::sum) number = first_of_sum(node.index) + node.axis;
-      if (node.source == Source::bond_field)
-        throw InputError("the gpu engine holds no bonds of a rule of text", "engine golden runs it")
-            .about({"rule.file", "rule"});
       made.push_back({static_cast<uint8_t>(node.source), at(n), static_cast<uint8_t>(number),
                       static_cast<uint8_t>(node.axis)});
     }
@@ -105,8 +103,38 @@ struct Code {
   }
 };
 
-RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round& round,
-                         std::vector<bool>& written) {
+// Numbers of particles, or of bonds, that rounds have written.
+class Written {
+ public:
+  explicit Written(int numbers) : written_(index(numbers)) {}
+  Store once(uint8_t from, int number, const std::string& name) {
+    if (written_[index(number)])
+      throw InputError(fmt::format("two rounds make '{}': the gpu engine has it made once a step", name),
+                       "engine lattice runs it")
+          .about({"rule.file", "rule"});
+    written_[index(number)] = true;
+    return {from, static_cast<uint8_t>(number)};
+  }
+
+ private:
+  std::vector<bool> written_;
+};
+
+void add_broken(const graph::FixedProgram& program, const graph::Round& round, RoundLists& lists) {
+  if (program.broken_at < 0) return;
+  const std::vector<int> nodes = needed_by(program.broken, {program.broken_at});
+  const graph::Registers registers = registers_for(program.broken, {nodes}, {program.broken_at});
+  if (registers.count > kMostRegisters)
+    refuse(round.name, "values of a broken bond", index(registers.count), kMostRegisters);
+  const Code code{program, round, program.broken, registers};
+  lists.broken_constants = code.constants(nodes);
+  lists.broken_code = code.operations(nodes, false);
+  lists.broken_fetch = code.fetches(nodes, false);
+  lists.broken = code.at(program.broken_at);
+}
+
+RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round& round, Written& written,
+                         Written& bonds_written) {
   std::vector<int> terms;
   for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
   std::vector<int> outputs;
@@ -116,10 +144,12 @@ RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round&
   for (const auto* nodes : {&motion.v, &motion.u, &motion.drift})
     outputs.insert(outputs.end(), nodes->begin(), nodes->end());
 
+  std::vector<int> made = terms;
+  for (const graph::Write& write : round.bond_writes) made.push_back(write.node);
   const std::vector<int> early = needed_by(round.pair, {round.when});
-  const std::vector<int> late = without(needed_by(round.pair, terms), early);
+  const std::vector<int> late = without(needed_by(round.pair, made), early);
   const std::vector<int> finish = needed_by(round.finish, outputs);
-  std::vector<int> kept = terms;
+  std::vector<int> kept = made;
   kept.push_back(round.when);
   const graph::Registers pair_registers = registers_for(round.pair, {early, late}, kept);
   const graph::Registers finish_registers = registers_for(round.finish, {finish}, outputs);
@@ -145,17 +175,19 @@ RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round&
                    .v = done.axes(motion.v),
                    .u = done.axes(motion.u),
                    .drift = done.axes(motion.drift),
-                   .when = pair.at(round.when)};
-  for (const graph::Write& write : round.writes) {
-    const int number = program.place(write.field) + write.component;
-    lists.writes.push_back({done.at(write.node), static_cast<uint8_t>(number)});
-    if (written[index(number)])
-      throw InputError(fmt::format("two rounds make '{}': the gpu engine has it made once a step",
-                                   program.fields[index(write.field)].name),
-                       "engine lattice runs it")
-          .about({"rule.file", "rule"});
-    written[index(number)] = true;
-  }
+                   .when = pair.at(round.when),
+                   .bond_writes = {},
+                   .broken_constants = {},
+                   .broken_code = {},
+                   .broken_fetch = {}};
+  for (const graph::Write& write : round.writes)
+    lists.writes.push_back(written.once(done.at(write.node), program.place(write.field) + write.component,
+                                        program.fields[index(write.field)].name));
+  for (const graph::Write& write : round.bond_writes)
+    lists.bond_writes.push_back(bonds_written.once(pair.at(write.node),
+                                                   program.bond_place(write.field) + write.component,
+                                                   program.bonds[index(write.field)].name));
+  add_broken(program, round, lists);
   return lists;
 }
 
@@ -164,9 +196,12 @@ RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round&
 std::vector<RoundLists> code_of(const graph::FixedProgram& program) {
   if (program.numbers() > kMostNumbers)
     refuse(program.name, "numbers of a particle", index(program.numbers()), kMostNumbers);
-  std::vector<bool> written(index(program.numbers()));
+  if (program.bond_numbers() > kMostBondNumbers)
+    refuse(program.name, "numbers of a bond", index(program.bond_numbers()), kMostBondNumbers);
+  Written written(program.numbers()), bonds_written(program.bond_numbers());
   std::vector<RoundLists> rounds;
-  for (const graph::Round& round : program.rounds) rounds.push_back(code_of_round(program, round, written));
+  for (const graph::Round& round : program.rounds)
+    rounds.push_back(code_of_round(program, round, written, bonds_written));
   return rounds;
 }
 

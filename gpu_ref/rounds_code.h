@@ -11,7 +11,8 @@
 namespace cuboct::gpu {
 
 inline constexpr int kMostRegisters = 64;
-inline constexpr int kMostInputs = 6;    // a dot of three axes
+inline constexpr int kMostInputs = 6;  // a dot of three axes
+inline constexpr int kMostBondNumbers = 8;
 inline constexpr int kMostNumbers = 32;  // of a particle's fields; of a round's sums
 
 struct Operation {
@@ -36,9 +37,15 @@ struct RoundLists {
   std::vector<Fetch> own, early_fetch, late_fetch, finish_fetch;
   std::vector<Store> terms, writes, v, u, drift;
   int when = 0;
+  std::vector<Store> bond_writes;
+  // Of a bond that is not met: whether it counts no more, the register `broken`.
+  std::vector<Operation> broken_constants, broken_code;
+  std::vector<Fetch> broken_fetch;
+  int broken = -1;  // all bonds count
 };
 
-// By round. InputError where one needs more than a thread has, or two rounds make the same field.
+// By round. InputError where one needs more than a thread has, or two rounds make the same
+// field, of particles or of bonds.
 std::vector<RoundLists> code_of(const graph::FixedProgram& program);
 
 }  // namespace cuboct::gpu

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "gpu_ref/rounds_list.h"
@@ -25,6 +26,7 @@ class RoundsEngine final : public IntegerEngine {
   RoundsEngine(const Plan& plan, const State& initial, const Options& options)
       : plan_(plan),
         program_(plan.program->program),
+        rows_(plan.program->rows.get()),
         block_(options.block),
         stream_(options.devices.front()),
         code_(stream_, program_),
@@ -68,6 +70,7 @@ class RoundsEngine final : public IntegerEngine {
       for (size_t f = 0; f < index(numbers_); ++f)
         sorted.fields.push_back(state.fields[k * index(numbers_) + f]);
     }
+    if (bond_count() > 0) add_bonds(order, sorted);
     return sorted;
   }
   uint64_t hash() const override { return hash_of(plan_.lattice, state()); }
@@ -200,7 +203,66 @@ class RoundsEngine final : public IntegerEngine {
     for (const Particle& p : state.particles) types.push_back(p.type), ids.push_back(p.id);
     copy.type.put(stream_, 0, types);
     copy.id.put(stream_, 0, ids);
+    if (rows_ != nullptr) put_bonds(ids, state.bonds);
     listed_ = false;
+  }
+
+  int bond_count() const { return program_.bond_numbers(); }
+
+  // `ids`: of the particles as they stand, and will stand.
+  void put_bonds(const std::vector<uint32_t>& ids, const std::vector<int64_t>& bonds) {
+    std::vector<uint32_t> place(count_);
+    for (uint32_t k = 0; k < count_; ++k) place[ids[k]] = k;
+    width_ = static_cast<uint32_t>(rows_->longest());
+    const size_t slots = size_t{width_} * count_;
+    constexpr uint32_t kHere = 13;  // no image: bonds find theirs
+    std::vector<uint32_t> entries(slots), kinds(slots), counts(count_);
+    std::vector<std::vector<int64_t>> numbers(index(bond_count()), std::vector<int64_t>(slots));
+    for (uint32_t k = 0; k < count_; ++k) {
+      const uint64_t first = rows_->first[ids[k]], end = rows_->first[ids[k] + 1];
+      counts[k] = static_cast<uint32_t>(end - first);
+      for (uint64_t b = first; b < end; ++b) {
+        const size_t slot = (b - first) * count_ + k;
+        entries[slot] = place[rows_->other[b]] | kHere << kPartnerBits;
+        kinds[slot] = rows_->kind[b];
+        for (size_t n = 0; n < numbers.size(); ++n) numbers[n][slot] = bonds[b * numbers.size() + n];
+      }
+    }
+    entries_.set(stream_, entries);
+    counts_.set(stream_, counts);
+    bond_kind_.set(stream_, kinds);
+    bond_constants_.set(stream_, rows_->constants);
+    bond_at_.assign(numbers.size(), 0);
+    for (auto& copy : bond_copies_) copy.resize(numbers.size());
+    for (size_t n = 0; n < numbers.size(); ++n) {
+      bond_copies_[0][n].set(stream_, numbers[n]);
+      bond_copies_[1][n].resize(bond_copies_[0][n].size());
+    }
+  }
+  RoundsBonds bonds() const {
+    RoundsBonds bonds{};
+    bonds.on = rows_ != nullptr;
+    for (size_t n = 0; n < bond_at_.size(); ++n) bonds.from[n] = bond_copies_[bond_at_[n]][n].data();
+    bonds.kind = bond_kind_.data(), bonds.constants = bond_constants_.data();
+    bonds.numbers = bond_count();
+    bonds.constant_count = static_cast<int>(program_.bond_constants.size());
+    bonds.position_frac = program_.position_frac;
+    for (int a = 0; a < 3; ++a) bonds.period[a] = int64_t{cells_.period[a]} << program_.position_frac;
+    return bonds;
+  }
+  // `order`: by id, where the particle stands.
+  void add_bonds(const std::vector<size_t>& order, State& state) const {
+    std::vector<std::vector<int64_t>> numbers;
+    for (size_t n = 0; n < bond_at_.size(); ++n) {
+      const Array<int64_t>& from = bond_copies_[bond_at_[n]][n];
+      numbers.push_back(from.host(stream_, 0, from.size()));
+    }
+    for (size_t id = 0; id < order.size(); ++id)
+      for (uint64_t b = rows_->first[id]; b < rows_->first[id + 1]; ++b)
+        for (const auto& values : numbers)
+          state.bonds.push_back(values[(b - rows_->first[id]) * count_ + order[id]]);
+    for (const uint64_t first : rows_->first)
+      state.bond_begin.push_back(first * static_cast<uint64_t>(bond_count()));
   }
 
   // Of copy `at_`, in the order of the device.
@@ -242,6 +304,7 @@ class RoundsEngine final : public IntegerEngine {
     cells_.entered = entered_.data();
     for_each(stream_, 0, count_, block_,
              RoundsSettle{view(at_), bins_, cells_, guard_, frac_, bin_.data(), bin_count_.data()});
+    if (rows_ != nullptr) return serve_bonds();
     exclusive_sums(stream_, bin_count_.data(), bin_first_.data(), static_cast<uint32_t>(bin_count_.size()));
     for_each(stream_, 0, count_, block_,
              RoundsOrder{bin_.data(), bin_first_.data(), bin_taken_.data(), order_.data()});
@@ -266,17 +329,27 @@ class RoundsEngine final : public IntegerEngine {
       width_ = (most + 7) / 8 * 8;
       entries_.resize(size_t{width_} * count_);
     }
+    // Both of a pair move, and both were rounded to a visible unit, then and now.
+    const double allowed = skin_ * unit / 2 - 4;
+    serve(allowed > 0 ? allowed * allowed : -1);
+  }
+  void serve(double allowed2) {
     list_.entries = entries_.data(), list_.counts = counts_.data(), list_.stride = count_;
     for (int s = 0; s < 27; ++s)
       for (int a = 0; a < 3; ++a)
         list_.shift[s][a] = ((a == 0 ? s % 3 : a == 1 ? s / 3 % 3 : s / 9) - 1) * bins_.length[a];
     for (size_t a = 0; a < 3; ++a) list_.listed[a] = listed_at_[a].data();
-    // Both of a pair move, and both were rounded to a visible unit, then and now.
-    const double allowed = skin_ * unit / 2 - 4;
-    list_.allowed2 = allowed > 0 ? allowed * allowed : -1;
+    list_.allowed2 = allowed2;
     ++builds_;
     age_ = 0;
     listed_ = true;
+  }
+  // Partners stay, wherever they go; cells are counted anew.
+  void serve_bonds() {
+    RoundsMark mark{view(at_), entered_.data(), {}, {}, guard_, frac_};
+    for (size_t a = 0; a < 3; ++a) mark.listed[a] = listed_at_[a].data(), mark.home[a] = home_[a].data();
+    for_each(stream_, 0, count_, block_, mark);
+    serve(std::numeric_limits<double>::infinity());
   }
 
   void gather() {
@@ -301,12 +374,12 @@ class RoundsEngine final : public IntegerEngine {
   }
 
   // Where the state is after a step that began at these copies: each number of a field that some round writes
-  // is in its other copy.
+  // is in its other copy. So is one of a bond.
   struct Places {
     int at;
-    std::vector<size_t> fields;
+    std::vector<size_t> fields, bonds;
   };
-  Places places() const { return {at_, field_at_}; }
+  Places places() const { return {at_, field_at_, bond_at_}; }
 
   uint32_t run(uint32_t steps, std::vector<uint64_t>* hashes) {
     for_each(stream_, 0, 1, 32, RoundsReset{control_.data()});
@@ -316,9 +389,11 @@ class RoundsEngine final : public IntegerEngine {
       step(n);
       after.push_back(places());
       if (hashes == nullptr) continue;
-      RoundsHash hash{view(at_), {cells_.period[0], cells_.period[1], cells_.period[2]},
-                      frac_,     numbers_,
-                      n,         control_.data()};
+      RoundsHash hash{view(at_),      {cells_.period[0], cells_.period[1], cells_.period[2]},
+                      frac_,          numbers_,
+                      bonds(),        counts_.data(),
+                      count_,         n,
+                      control_.data()};
       sum_each(stream_, 0, count_, block_, hash, hashes_.data() + n);
     }
     const RoundsControl control = control_.host(stream_, 0, 1)[0];
@@ -326,7 +401,7 @@ class RoundsEngine final : public IntegerEngine {
     uint32_t done = steps;
     if (told_.doubt <= steps) done = told_.doubt - 1;
     done = std::min(done, told_.old);
-    at_ = after[done].at, field_at_ = after[done].fields;
+    at_ = after[done].at, field_at_ = after[done].fields, bond_at_ = after[done].bonds;
     if (hashes != nullptr) {
       const std::vector<uint64_t> sums = hashes_.host(stream_, 1, done);
       hashes->insert(hashes->end(), sums.begin(), sums.end());
@@ -338,8 +413,9 @@ class RoundsEngine final : public IntegerEngine {
     const int from = at_;
     for (size_t k = 0; k < code_.rounds().size(); ++k) {
       const bool last = k + 1 == code_.rounds().size();
-      RoundsStep round{code_.rounds()[k],  view(from), view(1 - from), list_, cells_, guard_, frac_, last,
-                       step_ + number - 1, number,     control_.data()};
+      RoundsStep round{
+          code_.rounds()[k],  view(from), view(1 - from), list_, cells_, bonds(), guard_, frac_, last,
+          step_ + number - 1, number,     control_.data()};
       // What a round writes it makes in the other copy, as others may still read this one.
       std::vector<bool> written(index(numbers_));
       for (const graph::Write& write : program_.rounds[k].writes)
@@ -347,7 +423,14 @@ class RoundsEngine final : public IntegerEngine {
       for (size_t f = 0; f < written.size(); ++f) {
         if (written[f]) round.to.fields[f] = copies_[1 - field_at_[f]].fields[f].data();
       }
+      std::vector<bool> bond_written(bond_at_.size());
+      for (const graph::Write& write : program_.rounds[k].bond_writes)
+        bond_written[index(program_.bond_place(write.field) + write.component)] = true;
+      for (size_t n = 0; n < bond_at_.size(); ++n)
+        if (bond_written[n]) round.bonds.to[n] = bond_copies_[1 - bond_at_[n]][n].data();
       for_each(stream_, 0, count_, block_, round);
+      for (size_t n = 0; n < bond_at_.size(); ++n)
+        if (bond_written[n]) bond_at_[n] = 1 - bond_at_[n];
       for (size_t f = 0; f < written.size(); ++f)
         if (written[f]) field_at_[f] = 1 - field_at_[f];
     }
@@ -356,7 +439,7 @@ class RoundsEngine final : public IntegerEngine {
   // Throws where the step cannot be done.
   void step_by_golden() {
     const State before = state();
-    GoldenIntegers golden(program_, plan_.lattice, plan_.arch.capacity, before);
+    GoldenIntegers golden(program_, plan_.lattice, plan_.arch.capacity, before, plan_.program->rows);
     golden.advance(1, nullptr);
     ++golden_steps_;
     ++step_;
@@ -365,6 +448,7 @@ class RoundsEngine final : public IntegerEngine {
 
   const Plan& plan_;
   const graph::FixedProgram& program_;
+  const graph::BondRows* rows_;  // null: the program is not bonded
   int block_;
   mutable Stream stream_;
   ProgramOnDevice code_;
@@ -384,6 +468,10 @@ class RoundsEngine final : public IntegerEngine {
   Array<uint32_t> bin_, order_, entered_, counts_, entries_, bin_count_, bin_first_, bin_taken_, occupancy_,
       most_;
   Array<uint8_t> exists_;
+  std::array<std::vector<Array<int64_t>>, 2> bond_copies_;  // by number
+  std::vector<size_t> bond_at_;
+  Array<uint32_t> bond_kind_;
+  Array<int64_t> bond_constants_;
   Array<RoundsControl> control_;
   Array<uint64_t> hashes_;
   uint32_t width_ = 0;

@@ -60,6 +60,36 @@ struct RoundsList {
 };
 inline constexpr int kPartnerBits = 27;
 
+// Of a bonded program: [row * stride + particle], as its list. Each end keeps its own numbers.
+struct RoundsBonds {
+  bool on;
+  const int64_t* from[kMostBondNumbers];
+  int64_t* to[kMostBondNumbers];
+  const uint32_t* kind;
+  const int64_t* constants;  // [kind][constant]
+  int numbers, constant_count;
+  int position_frac;
+  int64_t period[3];  // visible units; 0: the box does not repeat
+
+  CUBOCT_DEVICE int64_t value(const Fetch& f, size_t slot) const {
+    if (static_cast<graph::Source>(f.source) == graph::Source::bond_field) return from[f.index][slot];
+    return constants[kind[slot] * static_cast<uint32_t>(constant_count) + f.index];
+  }
+  // `apart` becomes that of the partner's image beside `own`. Whether their cells are neighbours.
+  CUBOCT_DEVICE bool meet(const int64_t (&own)[3], int64_t (&apart)[3]) const {
+    bool met = true;
+    for (int a = 0; a < 3; ++a) {
+      if (period[a] > 0) {
+        const int64_t half = apart[a] + period[a] / 2;
+        apart[a] -= (half >= 0 ? half / period[a] : -((period[a] - 1 - half) / period[a])) * period[a];
+      }
+      const int64_t cells = ((own[a] + apart[a]) >> position_frac) - (own[a] >> position_frac);
+      met = met && cells >= -1 && cells <= 1;
+    }
+    return met;
+  }
+};
+
 struct RoundsRegisters {
   int64_t at[kMostRegisters];
 };
@@ -186,6 +216,7 @@ struct RoundsStep {
   RoundsView from, to;  // fields of `to`: those that the round writes
   RoundsList list;
   RoundsCells cells;
+  RoundsBonds bonds;
   int guard, frac;  // G; P+G
   bool last;
   uint64_t step;
@@ -230,7 +261,8 @@ struct RoundsStep {
         return static_cast<int64_t>(step);
     }
   }
-  CUBOCT_DEVICE int64_t of_pair(const Fetch& f, uint32_t i, uint32_t j, const int64_t (&apart)[3]) const {
+  CUBOCT_DEVICE int64_t of_pair(const Fetch& f, uint32_t i, uint32_t j, const int64_t (&apart)[3],
+                                size_t slot) const {
     switch (static_cast<graph::Source>(f.source)) {
       case graph::Source::apart:
         return apart[f.axis];
@@ -242,8 +274,27 @@ struct RoundsStep {
         return code.pair_constants[(f.index * code.types + from.type[i]) * code.types + from.type[j]];
       case graph::Source::other_field:
         return from.fields[f.index][j];
-      default:  // other_id
+      case graph::Source::other_id:
         return from.id[j];
+      default:  // of the bond
+        return bonds.value(f, slot);
+    }
+  }
+
+  // A bond that is not met.
+  CUBOCT_DEVICE bool broken(size_t slot) const {
+    if (code.broken < 0) return false;
+    RoundsRegisters r;
+    operate(code.broken_constants, code.broken_tables, r);
+    for (int k = 0; k < code.broken_fetch.count; ++k)
+      r.at[code.broken_fetch.data[k].to] = bonds.value(code.broken_fetch.data[k], slot);
+    operate(code.broken_code, code.broken_tables, r);
+    return r.at[code.broken] != 0;
+  }
+  CUBOCT_DEVICE void keep_bond(size_t slot) const {
+    for (int k = 0; k < code.bond_writes.count; ++k) {
+      const int number = code.bond_writes.data[k].to;
+      bonds.to[number][slot] = bonds.from[number][slot];
     }
   }
 
@@ -256,19 +307,30 @@ struct RoundsStep {
     const uint32_t count = list.counts[i];
     bool fits = true;
     for (uint32_t row = 0; row < count; ++row) {
-      const uint32_t entry = list.entries[row * list.stride + i];
+      const size_t slot = row * list.stride + i;
+      const uint32_t entry = list.entries[slot];
       const uint32_t j = entry & ((1u << kPartnerBits) - 1);
       const int64_t(&shift)[3] = list.shift[entry >> kPartnerBits];
       int64_t apart[3];
       for (int a = 0; a < 3; ++a) apart[a] = (from.x[a][j] >> guard) + shift[a] - x[a];
+      if (bonds.on && !bonds.meet(x, apart)) {
+        fits = fits && broken(slot);
+        keep_bond(slot);
+        continue;
+      }
       for (int k = 0; k < code.early_fetch.count; ++k)
-        r.at[code.early_fetch.data[k].to] = of_pair(code.early_fetch.data[k], i, j, apart);
+        r.at[code.early_fetch.data[k].to] = of_pair(code.early_fetch.data[k], i, j, apart, slot);
       operate(code.early, code.tables, r);
-      if (r.at[code.when] == 0) continue;
+      if (r.at[code.when] == 0) {
+        keep_bond(slot);
+        continue;
+      }
       for (int k = 0; k < code.late_fetch.count; ++k)
-        r.at[code.late_fetch.data[k].to] = of_pair(code.late_fetch.data[k], i, j, apart);
+        r.at[code.late_fetch.data[k].to] = of_pair(code.late_fetch.data[k], i, j, apart, slot);
       fits = operate(code.late, code.tables, r) && fits;
       for (int k = 0; k < code.terms.count; ++k) sums[k] += r.at[code.terms.data[k].from];
+      for (int k = 0; k < code.bond_writes.count; ++k)
+        bonds.to[code.bond_writes.data[k].to][slot] = r.at[code.bond_writes.data[k].from];
     }
     return fits;
   }
@@ -329,6 +391,9 @@ struct RoundsHash {
   RoundsView at;
   int period[3];
   int frac, numbers;
+  RoundsBonds bonds;
+  const uint32_t* counts;
+  size_t stride;
   uint32_t number;
   const RoundsControl* control;
   CUBOCT_DEVICE bool idle() const { return control->doubt <= number || control->old < number; }
@@ -345,6 +410,8 @@ struct RoundsHash {
           .add(at.v[a][i])
           .add(at.u[0] != nullptr ? at.u[a][i] : 0);
     for (int f = 0; f < numbers; ++f) hash.add(at.fields[f][i]);
+    for (uint32_t row = 0; bonds.on && row < counts[i]; ++row)
+      for (int k = 0; k < bonds.numbers; ++k) hash.add(bonds.from[k][row * stride + i]);
     return hash.value();
   }
 };

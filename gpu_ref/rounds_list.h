@@ -81,6 +81,22 @@ struct RoundsGather {
   }
 };
 
+// Where particles stay in their order: what a list starts from.
+struct RoundsMark {
+  RoundsView at;
+  uint32_t* entered;
+  int64_t* listed[3];
+  int32_t* home[3];
+  int guard, frac;
+  CUBOCT_DEVICE void operator()(uint32_t i) const {
+    for (int a = 0; a < 3; ++a) {
+      listed[a][i] = at.x[a][i] >> guard;
+      home[a][i] = static_cast<int32_t>(at.x[a][i] >> frac);
+    }
+    entered[i] = 1u << 13;
+  }
+};
+
 // How many partners are within `reach2`; those beyond `width` rows are not kept.
 struct RoundsMakeList {
   RoundsBins bins;

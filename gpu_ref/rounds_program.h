@@ -26,6 +26,11 @@ struct RoundCode {
   const CodeTable *tables, *finish_tables;
   const int64_t *type_constants, *pair_constants;  // [constant][type], [constant][own type][other type]
   int types, when;
+  Span<Store> bond_writes;
+  Span<Operation> broken_constants, broken_code;
+  Span<Fetch> broken_fetch;
+  const CodeTable* broken_tables;
+  int broken;
 };
 
 // Holds what RoundCodes point to.
@@ -57,7 +62,13 @@ class ProgramOnDevice {
                          type_constants,
                          pair_constants,
                          program.types,
-                         of.when});
+                         of.when,
+                         put(of.bond_writes, stores_),
+                         put(of.broken_constants, operations_),
+                         put(of.broken_code, operations_),
+                         put(of.broken_fetch, fetches_),
+                         put_tables(program.broken),
+                         of.broken});
     }
   }
   const std::vector<RoundCode>& rounds() const { return rounds_; }

@@ -64,7 +64,7 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
     if (shared())
       throw InputError("a rule of text runs on one rank of the lattice engine", "use --threads")
           .about({"rule.file", "rule"});
-    rounds_.emplace(plan.program->program, rule_);
+    rounds_.emplace(plan.program->program, rule_, lattice_, plan.program->rows.get());
   }
   const std::vector<Kernels> here = kernels_here(rule_);
   const auto named = std::find_if(here.begin(), here.end(), [&](const Kernels& k) {
@@ -138,7 +138,7 @@ void LatticeEngine::Impl::fill(const std::function<Particle(uint32_t)>& particle
   if (options_.quiescence && !(rounds_ && rounds_->knows_time())) quiet_.emplace(lattice_, rows_, rounds);
 }
 
-void LatticeEngine::Impl::fill_fields(std::span<const int64_t> fields) {
+void LatticeEngine::Impl::fill_fields(const std::vector<int64_t>& fields) {
   const size_t numbers = particles_.fields.size();
   for_each_index([&](uint32_t p) {
     for (size_t f = 0; f < numbers; ++f)
@@ -170,6 +170,13 @@ Particle LatticeEngine::Impl::particle(uint32_t index) const {
     if (plan_.rule.pd) p.u[a] = static_cast<int64_t>(particles_.u[a][index]);
   }
   return p;
+}
+
+void LatticeEngine::Impl::give_bonds(State& state) const {
+  state.bonds = rounds_->give_bonds();
+  if (state.bonds.empty()) return;
+  for (const uint64_t first : plan_.program->rows->first)
+    state.bond_begin.push_back(first * static_cast<uint64_t>(rounds_->program().bond_numbers()));
 }
 
 std::vector<Particle> LatticeEngine::Impl::everyone() const {
@@ -228,10 +235,12 @@ std::vector<Int3> LatticeEngine::Impl::kicks() {
 
 LatticeEngine::LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
                              const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options,
-                             std::span<const int64_t> fields)
+                             const ProgramNumbers& kept)
     : impl_(std::make_unique<Impl>(plan, step, count, options)) {
   impl_->fill(particle);
-  if (impl_->rounds_) impl_->fill_fields(fields);
+  if (!impl_->rounds_) return;
+  impl_->fill_fields(kept.fields);
+  impl_->rounds_->take_bonds(kept.bonds);
 }
 
 LatticeEngine::~LatticeEngine() = default;
@@ -246,7 +255,11 @@ std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_
 
 std::vector<Int3> LatticeEngine::kicks() { return impl_->kicks(); }
 
-State LatticeEngine::state() const { return {impl_->step_, impl_->everyone(), impl_->fields()}; }
+State LatticeEngine::state() const {
+  State state{impl_->step_, impl_->everyone(), impl_->fields()};
+  if (impl_->rounds_ && impl_->rounds_->bonded()) impl_->give_bonds(state);
+  return state;
+}
 
 void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& see) const {
   if (!impl_->shared()) {
@@ -262,7 +275,7 @@ void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& se
 
 uint64_t LatticeEngine::hash() const {
   const Impl& impl = *impl_;
-  if (!impl.particles_.fields.empty()) return hash_of(impl.lattice_, state());
+  if (impl.rounds_) return hash_of(impl.lattice_, state());
   std::atomic<uint64_t> all = 0;
   for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
     all += hash_particles(impl.particles_, impl.lattice_, impl.members_.cells(), impl.plan_.rule.widths,

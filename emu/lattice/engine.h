@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "emu/lattice/ranks.h"
 #include "emu/lattice/slots.h"
@@ -35,18 +36,23 @@ struct LatticeCounters {
                                   // before: their clock could stand still (quiescence on)
 };
 
+// What a program keeps of particles, by id, and of bonds, in the order of its rows.
+struct ProgramNumbers {
+  std::vector<int64_t> fields, bonds;
+};
+
 // Where ranks share the scene, every call but the plain getters is collective.
 class LatticeEngine {
  public:
   // `particle(k)`, k = 0 ... count-1, is called once each in this order (twice with ranks): no second copy of
   // the state is held. Ids are 0 ... count-1. Particles of one cell take its slots in the order in which they
-  // come (by id at the start of a run; in the order of for_each_slot when a run resumes). `fields`: by id,
-  // the numbers that the plan's program keeps of each; the engine then steps that program. `plan` must
-  // outlive the engine. Throws RunError where a cell would hold more than its capacity, InputError where
-  // `simd` is not to be had, or a program not to be run.
+  // come (by id at the start of a run; in the order of for_each_slot when a run resumes). `kept`: what the
+  // plan's program keeps besides; the engine steps that program. `plan` must outlive the engine. Throws
+  // RunError where a cell would hold more than its capacity, InputError where `simd` is not to be had, or a
+  // program not to be run.
   LatticeEngine(const Plan& plan, uint64_t step, uint32_t count,
                 const std::function<Particle(uint32_t)>& particle, const LatticeOptions& options,
-                std::span<const int64_t> fields = {});
+                const ProgramNumbers& kept = {});
   ~LatticeEngine();
   LatticeEngine(const LatticeEngine&) = delete;
   LatticeEngine& operator=(const LatticeEngine&) = delete;

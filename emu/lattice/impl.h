@@ -19,8 +19,9 @@ namespace cuboct::emu {
 struct LatticeEngine::Impl {
   Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options);
   void fill(const std::function<Particle(uint32_t)>& particle);
-  void fill_fields(std::span<const int64_t> fields);
+  void fill_fields(const std::vector<int64_t>& fields);
   std::vector<int64_t> fields() const;  // by id
+  void give_bonds(State& state) const;
   Particle particle(uint32_t index) const;
   template <typename See>
   void for_each_index(const See& see) const {

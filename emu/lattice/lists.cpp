@@ -102,7 +102,9 @@ void LatticeEngine::Impl::build() {
     if (rounds_) rounds_->cut(blocks_.size(), snapshot_.room);
     for_each_block([&](Block& block) {
       Search search(lattice_, rows_, cutoff_ + skin_, bins);
-      if (rounds_)
+      if (rounds_ && rounds_->bonded())
+        rounds_->build(number_of(block), block, particles_, index_);
+      else if (rounds_)
         rounds_->build(number_of(block), block, particles_, std::move(search));
       else
         build_list(rule_, particles_, stored_, std::move(search), block);
@@ -167,6 +169,10 @@ void LatticeEngine::Impl::prune(double skin) {
 
 // Makes sure that the near list holds every pair inside the cutoff.
 void LatticeEngine::Impl::refresh_lists() {
+  if (rounds_ && rounds_->bonded()) {
+    if (!listed_) build();
+    return;
+  }
   if (listed_ && near_moved_ <= near_skin_ / 2) return;
   // The far list must hold every pair within the near list's reach.
   const auto room = [&] { return skin_ - 2 * moved_; };

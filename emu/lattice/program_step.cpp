@@ -9,6 +9,7 @@
 namespace cuboct::emu {
 
 void LatticeEngine::Impl::keep_fields() {
+  rounds_->keep_bonds();
   for (size_t f = 0; f < particles_.fields.size(); ++f)
     for_each_block([&](Block& block) {
       std::copy(particles_.fields[f].data() + block.begin, particles_.fields[f].data() + block.end,
@@ -42,7 +43,8 @@ void LatticeEngine::Impl::fail_as_golden() const {
       for (const auto& field : fields_before_)
         begin.fields.push_back(static_cast<int64_t>(field[index_(id)]));
     });
-  Golden(rounds_->program(), lattice_, plan_.arch.capacity, begin).step();
+  begin.bonds = rounds_->bonds_before();
+  Golden(rounds_->program(), lattice_, plan_.arch.capacity, begin, plan_.program->rows).step();
   throw std::logic_error("the lattice engine finds a fault that golden does not");
 }
 

@@ -157,13 +157,13 @@ class IntegerRunner : public IntegerEngine {
   }
 
  private:
-  static std::vector<int64_t> by_id(const State& state) {
-    std::vector<int64_t> fields(state.fields.size());
-    const size_t numbers = fields.size() / std::max<size_t>(1, state.particles.size());
+  static ProgramNumbers by_id(const State& state) {
+    ProgramNumbers kept{std::vector<int64_t>(state.fields.size()), state.bonds};
+    const size_t numbers = state.fields.size() / std::max<size_t>(1, state.particles.size());
     for (size_t k = 0; k < state.particles.size(); ++k)
       std::copy_n(state.fields.begin() + static_cast<ptrdiff_t>(k * numbers), numbers,
-                  fields.begin() + static_cast<ptrdiff_t>(state.particles[k].id * numbers));
-    return fields;
+                  kept.fields.begin() + static_cast<ptrdiff_t>(state.particles[k].id * numbers));
+    return kept;
   }
 
   LatticeEngine engine_;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
+#include "model/contract/program_run.h"
 #include "model/graph/parity.h"
 
 namespace cuboct::emu {
@@ -21,6 +23,13 @@ std::vector<int> all_terms(const graph::Round& round) {
   std::vector<int> terms;
   for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
   return terms;
+}
+
+// All that a pair's graph is run for.
+std::vector<int> all_outputs(const graph::Round& round) {
+  std::vector<int> outputs = all_terms(round);
+  for (const graph::Write& write : round.bond_writes) outputs.push_back(write.node);
+  return outputs;
 }
 
 std::vector<int> inputs_of(const Graph& graph, const std::vector<int>& nodes) {
@@ -86,38 +95,46 @@ bool PairPass::is_mutual(const graph::Round& round) {
 
 PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round, bool once)
     : program_(program),
+      round_(round),
       graph_(round.pair),
       when_(round.when),
       terms_(all_terms(round)),
       signs_(once ? signs_of(round) : std::vector<double>()),
-      early_(early_nodes(round, terms_)),
-      late_(beyond(graph_, terms_, early_)),
+      early_(early_nodes(round, all_outputs(round))),
+      late_(beyond(graph_, all_outputs(round), early_)),
       early_inputs_(inputs_of(graph_, early_)),
       late_inputs_(inputs_of(graph_, late_)),
-      kept_(read_of(graph_, early_, late_, terms_)),
-      block_(graph_, {early_, late_}, with(terms_, when_)),
+      kept_(read_of(graph_, early_, late_, all_outputs(round))),
+      block_(graph_, {early_, late_}, with(all_outputs(round), when_)),
       own_(VectorBlock::kRoom),
       other_(VectorBlock::kRoom),
-      chosen_(VectorBlock::kRoom) {
+      chosen_(VectorBlock::kRoom),
+      bond_(VectorBlock::kRoom) {
   for (const int n : early_inputs_)
     if (const Node& node = graph_.nodes[static_cast<size_t>(n)]; node.source == Source::apart)
       apart_.emplace_back(static_cast<size_t>(node.axis), block_.values(n));
 }
 
 bool PairPass::run(const Particles& particles, const PartnerList& list, const Block& block,
-                   const uint8_t* wanted, uint64_t step, std::vector<PaddedArray<double>>& sums) {
+                   const Active& active, uint64_t step, std::vector<PaddedArray<double>>& sums,
+                   const Bonds& bonds) {
   for (auto& sum : sums) std::fill(sum.data() + block.begin, sum.data() + block.end, 0.0);
   fits_ = true;
+  const uint8_t* wanted = signs_.empty() ? active.awake : active.near;
   for (uint32_t i = block.begin; i < block.end; ++i) {
     if (wanted != nullptr && wanted[particles.cell[i]] == 0) continue;
     const PartnerList::Row& row = list.row(i - block.begin);
     for (uint32_t k = row.begin; k < row.near;) {
       const uint32_t end = std::min(row.near, k + static_cast<uint32_t>(VectorBlock::kRoom - count_));
-      for (; k < end; ++k) meet(particles, i, list.partners()[k]);
-      if (count_ == VectorBlock::kRoom) flush(particles, block, step, sums);
+      if (bonds.rows == nullptr)
+        for (; k < end; ++k) meet(particles, i, list.partners()[k]);
+      else
+        for (; k < end; ++k)
+          meet_bond(particles, i, Partner::index(list.partners()[k]), row.bond + (k - row.begin), bonds);
+      if (count_ == VectorBlock::kRoom) flush(particles, block, active, step, sums, bonds);
     }
   }
-  flush(particles, block, step, sums);
+  flush(particles, block, active, step, sums, bonds);
   return fits_;
 }
 
@@ -131,25 +148,73 @@ inline void PairPass::meet(const Particles& particles, uint32_t own, uint32_t pa
   ++count_;
 }
 
-void PairPass::repeat_first(const std::vector<int>& nodes, size_t lanes) {
-  for (auto* index : {&own_, &other_})
-    std::fill(index->data() + lanes, index->data() + VectorBlock::padded(lanes), (*index)[0]);
-  for (const int n : nodes) {
-    double* values = block_.values(n);
-    std::fill(values + lanes, values + VectorBlock::padded(lanes), values[0]);
+// Of the partner's images the one in the 27 cells around own. Where both are within a cell's edge, their
+// cells are neighbours.
+inline void PairPass::meet_bond(const Particles& particles, uint32_t own, uint32_t other, uint64_t bond,
+                                const Bonds& bonds) {
+  std::array<double, 3> apart;
+  bool met = true;
+  for (size_t a = 0; a < 3; ++a) {
+    apart[a] = particles.x[a][other] - particles.x[a][own];
+    if (bonds.period[a] > 0) apart[a] -= std::round(apart[a] / bonds.period[a]) * bonds.period[a];
+    if (std::abs(apart[a]) < bonds.cell) continue;
+    const double x = particles.x[a][own];
+    met = met && std::abs(std::floor((x + apart[a]) / bonds.cell) - std::floor(x / bonds.cell)) <= 1;
+  }
+  if (!met) {
+    fits_ = fits_ && is_broken(bond, bonds);
+    return;
+  }
+  own_[count_] = own;
+  other_[count_] = other;
+  bond_[count_] = bond;
+  for (const auto& [axis, lanes] : apart_) lanes[count_] = apart[axis];
+  ++count_;
+}
+
+// Rare: golden's own.
+bool PairPass::is_broken(uint64_t bond, const Bonds& bonds) {
+  std::vector<int64_t> numbers;
+  for (const auto& values : *bonds.numbers) numbers.push_back(static_cast<int64_t>(values[bond]));
+  const auto constants =
+      bonds.rows->constants.data() + bonds.rows->kind[bond] * program_.bond_constants.size();
+  return cuboct::is_broken(program_, {.bond = numbers.data(), .bond_constants = constants});
+}
+
+void PairPass::write_bonds(size_t lanes, const Particles& particles, const Active& active,
+                           const Bonds& bonds) {
+  for (const graph::Write& write : round_.bond_writes) {
+    const double* value = block_.values(write.node);
+    PaddedArray<double>& to =
+        (*bonds.numbers)[static_cast<size_t>(program_.bond_place(write.field) + write.component)];
+    for (size_t k = 0; k < lanes; ++k) {
+      if (active.changed != nullptr && to[bond_[k]] != value[k]) active.mark(particles.cell[own_[k]]);
+      to[bond_[k]] = value[k];
+    }
   }
 }
 
-void PairPass::flush(const Particles& particles, const Block& block, uint64_t step,
-                     std::vector<PaddedArray<double>>& sums) {
+void PairPass::repeat_first(const std::vector<int>& nodes, size_t lanes) {
+  const size_t end = VectorBlock::padded(lanes);
+  for (auto* index : {&own_, &other_}) std::fill(index->data() + lanes, index->data() + end, (*index)[0]);
+  std::fill(bond_.data() + lanes, bond_.data() + end, bond_[0]);
+  for (const int n : nodes) {
+    double* values = block_.values(n);
+    std::fill(values + lanes, values + end, values[0]);
+  }
+}
+
+void PairPass::flush(const Particles& particles, const Block& block, const Active& active, uint64_t step,
+                     std::vector<PaddedArray<double>>& sums, const Bonds& bonds) {
   if (count_ == 0) return;
   repeat_first(early_inputs_, count_);
-  fill(early_inputs_, particles, count_, step);
+  fill(early_inputs_, particles, count_, step, bonds);
   fits_ = block_.run(0, count_) && fits_;
   if (const size_t lanes = choose(count_); lanes > 0) {
-    fill(late_inputs_, particles, lanes, step);
+    fill(late_inputs_, particles, lanes, step, bonds);
     fits_ = block_.run(1, lanes) && fits_;
     add(lanes, block, sums);
+    write_bonds(lanes, particles, active, bonds);
   }
   count_ = 0;
 }
@@ -168,12 +233,14 @@ size_t PairPass::choose(size_t lanes) {
   };
   move(own_.data());
   move(other_.data());
+  move(bond_.data());
   for (const int n : kept_) move(block_.values(n));
   repeat_first(kept_, count);
   return count;
 }
 
-void PairPass::fill(const std::vector<int>& inputs, const Particles& particles, size_t lanes, uint64_t step) {
+void PairPass::fill(const std::vector<int>& inputs, const Particles& particles, size_t lanes, uint64_t step,
+                    const Bonds& bonds) {
   const size_t padded = VectorBlock::padded(lanes);
   const auto types = static_cast<size_t>(program_.types);
   for (const int n : inputs) {
@@ -226,6 +293,17 @@ void PairPass::fill(const std::vector<int>& inputs, const Particles& particles, 
       case Source::step:
         each([&](size_t) { return step; });
         break;
+      case Source::bond_field: {
+        const auto place = static_cast<size_t>(program_.bond_place(node.index)) + axis;
+        each([from = (*bonds.numbers)[place].data(), this](size_t k) { return from[bond_[k]]; });
+        break;
+      }
+      case Source::bond_constant: {
+        const graph::BondRows& rows = *bonds.rows;
+        const size_t numbers = program_.bond_constants.size();
+        each([&](size_t k) { return rows.constants[rows.kind[bond_[k]] * numbers + index]; });
+        break;
+      }
       default:
         throw std::logic_error(std::string("a pair has no ") + to_string(node.source));
     }

@@ -24,7 +24,21 @@ void PartnerList::build(const Block& block, const Particles& particles, int posi
       return std::pair(Partner::index(a), a) < std::pair(Partner::index(b), b);
     });
     const auto end = static_cast<uint32_t>(partners_.size());
-    rows_.push_back({begin, end, end});
+    rows_.push_back({begin, end, end, 0});
+  }
+}
+
+void PartnerList::build(const Block& block, const Particles& particles, const Index& index,
+                        const graph::BondRows& rows) {
+  rows_.clear();
+  partners_.clear();
+  for (uint32_t i = block.begin; i < block.end; ++i) {
+    const uint32_t id = particles.id_of(i);
+    const auto begin = static_cast<uint32_t>(partners_.size());
+    for (uint64_t b = rows.first[id]; b < rows.first[id + 1]; ++b)
+      partners_.push_back(Partner::of(index(rows.other[b]), kNoShift));
+    const auto end = static_cast<uint32_t>(partners_.size());
+    rows_.push_back({begin, end, end, rows.first[id]});
   }
 }
 

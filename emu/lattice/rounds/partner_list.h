@@ -8,6 +8,7 @@
 
 #include "emu/lattice/block.h"
 #include "emu/lattice/search.h"
+#include "model/graph/bond_rows.h"
 
 namespace cuboct::emu {
 
@@ -20,8 +21,13 @@ struct Partner {
   static uint8_t shift(uint32_t partner) { return static_cast<uint8_t>(partner >> kIndexBits); }
 };
 
+// What a bonded program keeps of bonds (graph::BondRows): by number, [bond].
+using BondNumbers = std::vector<PaddedArray<double>>;
+
 class PartnerList {
  public:
+  // The rows of bonds, for as long as particles are stored as they are.
+  void build(const Block& block, const Particles& particles, const Index& index, const graph::BondRows& rows);
   // The particles within the search's reach. `once`: a pair inside the block stands at its particle of lower
   // index alone.
   void build(const Block& block, const Particles& particles, int position_frac, bool once, Search search);
@@ -30,6 +36,7 @@ class PartnerList {
 
   struct Row {
     uint32_t begin, near, end;
+    uint64_t bond;  // of the first partner
   };
   const Row& row(uint32_t particle_in_block) const { return rows_[particle_in_block]; }
   const uint32_t* partners() const { return partners_.data(); }

@@ -22,11 +22,19 @@ void check_doubles(const graph::Graph& graph, const std::string& what) {
 
 }  // namespace
 
-Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule)
-    : program_(program), rule_(rule), once_(std::ranges::all_of(program.rounds, PairPass::is_mutual)) {
-  if (program.bonded)
-    throw InputError("bonds that last are not on the lattice engine yet", "engine golden runs them")
-        .about({"rule.file", "rule"});
+Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule, const Lattice& lattice,
+               const graph::BondRows* rows)
+    : program_(program),
+      rule_(rule),
+      once_(rows == nullptr && std::ranges::all_of(program.rounds, PairPass::is_mutual)) {
+  if (rows != nullptr) {
+    bonds_ = {rows, &bond_numbers_, rule.cell, {}};
+    for (size_t a = 0; a < 3; ++a) bonds_.period[a] = lattice.period()[a] * rule.cell;
+    for (int k = 0; k < program.bond_numbers(); ++k) {
+      bond_numbers_.emplace_back(rows->other.size());
+      bonds_before_.emplace_back(rows->other.size());
+    }
+  }
   for (const graph::Round& round : program.rounds) {
     check_doubles(round.pair, "a pair of " + round.name);
     check_doubles(round.finish, "the finish of " + round.name);
@@ -69,14 +77,35 @@ void Rounds::build(size_t b, const Block& block, const Particles& particles, Sea
   parts_[b].list.build(block, particles, program_.position_frac, once_, std::move(search));
 }
 
+void Rounds::build(size_t b, const Block& block, const Particles& particles, const Index& index) {
+  parts_[b].list.build(block, particles, index, *bonds_.rows);
+}
+
+void Rounds::take_bonds(const std::vector<int64_t>& bonds) {
+  const size_t numbers = bond_numbers_.size();
+  for (size_t k = 0; k < bonds.size(); ++k)
+    bond_numbers_[k % numbers][k / numbers] = static_cast<double>(bonds[k]);
+}
+
+std::vector<int64_t> Rounds::whole(const BondNumbers& numbers) {
+  std::vector<int64_t> bonds;
+  for (size_t b = 0; b < (numbers.empty() ? 0 : numbers[0].size()); ++b)
+    for (const auto& values : numbers) bonds.push_back(static_cast<int64_t>(values[b]));
+  return bonds;
+}
+
+void Rounds::keep_bonds() {
+  for (size_t k = 0; k < bond_numbers_.size(); ++k)
+    std::copy_n(bond_numbers_[k].data(), bond_numbers_[k].size(), bonds_before_[k].data());
+}
+
 void Rounds::prune(size_t b, const Block& block, const Particles& particles, double reach) {
   parts_[b].list.prune(block, particles, reach);
 }
 
 bool Rounds::meet(size_t k, size_t b, const Block& block, const Particles& particles, const Active& active,
                   uint64_t step) {
-  return parts_[b].pairs[k]->run(particles, parts_[b].list, block, once_ ? active.near : active.awake, step,
-                                 sums_[k]);
+  return parts_[b].pairs[k]->run(particles, parts_[b].list, block, active, step, sums_[k], bonds_);
 }
 
 bool Rounds::finish(size_t k, size_t b, const Block& block, Particles& particles, const Active& active,

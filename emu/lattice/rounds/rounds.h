@@ -13,11 +13,23 @@ namespace cuboct::emu {
 class Rounds {
  public:
   // Both must outlive it. InputError where a value needs more than doubles hold.
-  Rounds(const graph::FixedProgram& program, const KernelRule& rule);
+  // `rows`: of a bonded program; else null.
+  Rounds(const graph::FixedProgram& program, const KernelRule& rule, const Lattice& lattice,
+         const graph::BondRows* rows);
 
   const graph::FixedProgram& program() const { return program_; }
   // Whether some value depends on the number of the step: then nothing is ever at rest.
   bool knows_time() const;
+  // Partners are those of bonds, and no list grows old.
+  bool bonded() const { return bonds_.rows != nullptr; }
+  void build(size_t b, const Block& block, const Particles& particles, const Index& index);
+  // What the rounds keep of bonds, in the order of State::bonds.
+  void take_bonds(const std::vector<int64_t>& bonds);
+  std::vector<int64_t> give_bonds() const { return whole(bond_numbers_); }
+  // Of the step at hand, before it wrote any.
+  void keep_bonds();
+  std::vector<int64_t> bonds_before() const { return whole(bonds_before_); }
+
   // For particles stored in these blocks from now on, at places below `room`.
   void cut(size_t blocks, size_t room);
   void build(size_t b, const Block& block, const Particles& particles, Search search);
@@ -46,6 +58,10 @@ class Rounds {
   std::vector<Part> parts_;                             // by block
   std::vector<std::vector<PaddedArray<double>>> sums_;  // by round
   Moves moves_;
+  static std::vector<int64_t> whole(const BondNumbers& numbers);
+
+  BondNumbers bond_numbers_, bonds_before_;
+  PairPass::Bonds bonds_;
 };
 
 }  // namespace cuboct::emu

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Rules of text: the lattice engine has golden's bits, also where it goes on from golden's checkpoint.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "emu/lattice/run.h"
+#include "hw/engine_kind.h"
+#include "hw/setup.h"
+#include "model/run/checkpoint.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+namespace {
+
+struct TextCase {
+  std::string scene;
+  uint64_t steps;
+};
+
+class TextEngines : public testing::TestWithParam<TextCase> {};
+
+TEST_P(TextEngines, LatticeHasGoldensBitsAndGoesOnFromItsCheckpoint) {
+  const Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR "/scenes/rules/") + GetParam().scene);
+  const Plan plan = program_plan_of(scene, Arch());
+  const EngineKind golden_kind = cuboct::golden_kind(scene, plan);
+  const auto golden = golden_kind.make(nullptr, false);
+  std::vector<uint64_t> expected{golden->hash()};
+  const uint64_t half = GetParam().steps / 2;
+  golden->advance(half, &expected);
+  const std::string path = testing::TempDir() + "text_engines_" + GetParam().scene + ".checkpoint";
+  CheckpointHead head;
+  head.plan_hash = plan.hash, head.step = half, head.particles = plan.particles;
+  head.engine = golden->memory();
+  write_checkpoint(path, head, *golden, plan.rule.pd);
+  golden->advance(GetParam().steps - half, &expected);
+  for (const int threads : {1, 3}) {
+    const emu::LatticeChoice choice{.engine = {threads, true, ""}};
+    const EngineKind kind = emu::lattice_kind(scene, plan, choice);
+    const auto lattice = kind.make(nullptr, false);
+    std::vector<uint64_t> found{lattice->hash()};
+    lattice->advance(GetParam().steps, &found);
+    EXPECT_EQ(found, expected) << threads << " threads";
+    CheckpointReader reader(path, plan.hash, plan.rule.pd);
+    const auto resumed = kind.make(&reader, false);
+    std::vector<uint64_t> rest;
+    resumed->advance(GetParam().steps - half, &rest);
+    EXPECT_EQ(rest,
+              std::vector<uint64_t>(expected.begin() + static_cast<ptrdiff_t>(half) + 1, expected.end()));
+  }
+  std::remove(path.c_str());
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, TextEngines,
+                         testing::Values(TextCase{"heat.toml", 40}, TextCase{"glass.toml", 60},
+                                         TextCase{"plastic.toml", 60}),
+                         [](const auto& p) { return p.param.scene.substr(0, p.param.scene.find('.')); });
+
+}  // namespace
+}  // namespace cuboct
