@@ -2,7 +2,12 @@
 // Programs on the gpu engine, with loops for kernels: the pair law as a program beside golden, on every case.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
 #include "gpu_ref/rounds_engine.h"
+#include "hw/engine_kind.h"
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "model/trace/compare.h"
@@ -93,6 +98,33 @@ TEST(GpuRounds, FaultsAriseAsInGolden) {
   Compared compared;
   for (const Fault fault : all_faults()) compare_rounds(fault_case(fault), 3, compared);
   EXPECT_EQ(compared.faults, all_faults().size());
+}
+
+// Glass that is torn apart so fast that halves of it lose sight of one another.
+TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
+  const std::string rules = CUBOCT_SOURCE_DIR "/scenes/rules/";
+  std::ifstream in(rules + "glass.toml");
+  std::string torn((std::istreambuf_iterator<char>(in)), {});
+  for (const char* speed : {"0, 0.5, 0", "0, -0.5, 0"}) {
+    const size_t at = torn.find(speed);
+    ASSERT_NE(at, std::string::npos);
+    torn.replace(at, std::string(speed).size(), speed[3] == '-' ? "0, -400, 0" : "0, 400, 0");
+  }
+  for (const Scene& scene : {read_scene(rules + "heat.toml"), parse_scene(torn, rules + "torn.toml")}) {
+    const Plan plan = program_plan_of(scene, Arch());
+    const auto golden = integer_run(scene, plan, nullptr);
+    const auto device = integer_run(
+        scene, plan, nullptr, [&](const State& state) { return gpu::make_rounds_engine(plan, state, {}); });
+    std::vector<uint64_t> expected{golden->hash()}, found{device->hash()};
+    golden->advance(150, &expected), device->advance(150, &found);
+    EXPECT_EQ(found, expected);
+    if (plan.program->rows == nullptr) continue;
+    const std::vector<double> damage = device->damage();
+    EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.3; }), 20);
+    EXPECT_EQ(damage, golden->damage());
+    const Counters counters = device->counters();
+    EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
+  }
 }
 
 }  // namespace
