@@ -150,9 +150,6 @@ double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * ru
 
 Vec3 force_of(const FixedRule& rule, const Int3& kick) { return newtons_per_kick(rule) * as_real(kick); }
 
-namespace {
-
-// `unit`: velocity_unit of the rule.
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, double unit) {
   const FixedType& type = rule.types[particle.type];
   Vec3 v;
@@ -168,8 +165,6 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
   }
   return v;
 }
-
-}  // namespace
 
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick) {
   return velocity_of(rule, particle, kick, velocity_unit(rule));

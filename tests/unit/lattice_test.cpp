@@ -93,6 +93,16 @@ Cell wrapped(Cell c, const Cell& period) {
   return c;
 }
 
+// A diagonal of cells is closed by six more for each step: three on the way there, three on the way back. Time
+// grows with its length, where a merge or a search over all cells for each of them takes minutes.
+TEST(Lattice, ClosesALongNeedle) {
+  for (const int length : {50, 200000}) {
+    std::vector<Cell> cells;
+    for (int k = 0; k < length; ++k) cells.push_back({k, k, k});
+    EXPECT_EQ(Lattice(cells, {}).size(), static_cast<uint32_t>(length + 4 * (length - 1))) << length;
+  }
+}
+
 // The definition: whenever two diagonal neighbours are in the set, so are the cells on the way by x, y, z.
 Cells closed(const std::vector<Cell>& cells, const Cell& period) {
   Cells set;
