@@ -445,7 +445,11 @@ double speed_of(const Curve& length, const Probe& probe) {
 }  // namespace
 
 void ProbeMeter::add(const Sample& sample) {
-  for (size_t i = 0; i < moved_.size(); ++i) {
+  const bool moves = std::ranges::any_of(probes_, [](const Probe& probe) {
+    using enum Probe::Kind;
+    return probe.kind == displacement || probe.kind == stress_strain || probe.kind == crack;
+  });
+  for (size_t i = 0; moves && i < moved_.size(); ++i) {
     moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
     latest_[i] = sample.x[i];
   }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "model/contract/lattice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <iterator>
 #include <tuple>
 #include <unordered_map>
+
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -70,6 +74,19 @@ class CellBlocks {
   std::unordered_map<Cell, uint64_t, CellHash> bits_;
   std::pair<const Cell, uint64_t>* last_ = nullptr;
 };
+
+// The ways between neighbours fill the box around all that hangs together: of a rod that slants its length to
+// the third. So many cells are made of those that were asked for, and so many in any case.
+constexpr size_t kMostClosed = 64, kAlwaysClosed = 2'000'000;
+
+[[noreturn]] void refuse_closure(size_t asked, size_t most) {
+  throw InputError(
+      fmt::format("more than {} cells are needed around the {} that particles reach: a body that "
+                  "slants takes all cells of the box around it",
+                  most, asked),
+      "turn its length along an axis, or a larger pitch")
+      .about({"geometry", "packing.pitch", "box", "particle"});
+}
 
 constexpr int bit_of(int dx, int dy, int dz) { return 13 + dx + 3 * dy + 9 * dz; }
 
@@ -196,9 +213,11 @@ void Lattice::close() {
   };
   // The sorted cells get them after the last round: along a needle there are as many rounds as cells.
   const auto middle = static_cast<ptrdiff_t>(cells_.size());
+  const size_t most = std::max(kAlwaysClosed, kMostClosed * cells_.size());
   for (; !missing.empty(); sort_unique(missing)) {
     for (const Cell& c : missing)
       if (all.add(c)) cells_.push_back(c);
+    if (cells_.size() > most) refuse_closure(static_cast<size_t>(middle), most);
     CellBlocks::Look look(all);
     std::vector<Cell> next;
     for (const Cell& c : missing) {

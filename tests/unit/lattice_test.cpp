@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "model/base/error.h"
+
 namespace cuboct {
 namespace {
 
@@ -93,13 +95,23 @@ Cell wrapped(Cell c, const Cell& period) {
   return c;
 }
 
-// A diagonal of cells is closed by six more for each step: three on the way there, three on the way back. Time
-// grows with its length, where a merge or a search over all cells for each of them takes minutes.
-TEST(Lattice, ClosesALongNeedle) {
-  for (const int length : {50, 200000}) {
+// A diagonal takes all cells of the cube around it, whose number is bounded before it is made.
+TEST(Lattice, ADiagonalFillsItsCubeOrIsRefused) {
+  const auto diagonal = [](int length) {
     std::vector<Cell> cells;
     for (int k = 0; k < length; ++k) cells.push_back({k, k, k});
-    EXPECT_EQ(Lattice(cells, {}).size(), static_cast<uint32_t>(length + 4 * (length - 1))) << length;
+    return cells;
+  };
+  EXPECT_EQ(Lattice(diagonal(30), {}).size(), 27000u);
+  try {
+    Lattice(diagonal(4000), {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "more than 2000000 cells are needed around the 4000 that particles reach: a body that slants "
+        "takes all cells of the box around it\n  hint: turn its length along an axis, or a larger "
+        "pitch");
   }
 }
 
