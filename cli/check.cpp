@@ -245,7 +245,7 @@ Items physics(const Loaded& loaded) {
   add_integers(items, scene, plan.arch);
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
   if (cost.probing > 0) items.add("probes", readings_text(scene.probe_every, cost.probing, cost));
-  if (cost.energies > 0) items.add("energies", energies_text(scene, cost));
+  if (cost.energies > 0) items.add("energy", energies_text(scene, cost));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
   const bool real = !has_machine(plan);
