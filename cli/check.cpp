@@ -202,11 +202,23 @@ std::string work_text(const Estimate& cost) {
 }
 
 // Their share is of the processors' time: the steps' is that of all threads.
-std::string readings_text(const Scene& scene, const Estimate& cost) {
-  const uint64_t every = scene.probe_every;
-  const double steps = (cost.seconds - cost.reading) * cost.threads;
-  return fmt::format("one every {} step{}, about {:.0f} % of the processor time", every,
-                     every == 1 ? "" : "s", 100 * cost.reading / (cost.reading + steps));
+std::string readings_text(uint64_t every, double of_readings, const Estimate& cost) {
+  const double readings = cost.probing + cost.energies,
+               all = (cost.seconds - readings) * cost.threads + readings;
+  const std::string when = every > 0 ? fmt::format("one every {} step{}", every, every == 1 ? "" : "s")
+                                     : std::string("the first and the last");
+  const double share = 100 * of_readings / all;
+  return fmt::format("{}, {} of the processor time", when,
+                     share < 1 ? "less than 1 %" : fmt::format("about {:.0f} %", share));
+}
+
+// With what one costs, by which the interval is chosen that a scene leaves to cuboct.
+std::string energies_text(const Scene& scene, const Estimate& cost) {
+  const double all = (cost.seconds - cost.probing - cost.energies) * cost.threads;
+  const double step = all / static_cast<double>(scene.steps);
+  return fmt::format("{}: one costs about {:.2g} steps",
+                     readings_text(scene.energy_every, cost.energies, cost),
+                     cost.energies / cost.energy_readings / step);
 }
 
 // What the bonds of a state to go on from are, of which a run would refuse others.
@@ -232,7 +244,8 @@ Items physics(const Loaded& loaded) {
   add_rounds(items, scene);
   add_integers(items, scene, plan.arch);
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
-  if (cost.reading > 0) items.add("probes", readings_text(scene, cost));
+  if (cost.probing > 0) items.add("probes", readings_text(scene.probe_every, cost.probing, cost));
+  if (cost.energies > 0) items.add("energy", energies_text(scene, cost));
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
   const bool real = !has_machine(plan);

@@ -71,7 +71,7 @@ uint64_t round_interval(uint64_t steps, double most) {
 // A rule of rounds keeps its bonds from the start: a neighbour is one, with all rounds and all that it keeps.
 // Times are those of the linear peridynamic solid with 17 bonds a particle, on one core of an EPYC: where
 // none breaks, and while an eighth of them does. Bonds of the moment are those of Tersoff's potential in a
-// sheet of carbon.
+// sheet of carbon. A rule that is text: the template `rule`.
 EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
   EngineCost cost = engine.cost;
   const RoundsRule* rounds = rounds_of(scene.rule);
@@ -79,20 +79,57 @@ EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
   const bool breaks = std::isfinite(rounds->bond_reach());
   cost.neighbour_time = breaks ? 38e-9 : 13e-9, cost.neighbour = 70;
   if (rounds->declaration().bonds == BondRange::current) cost.neighbour_time = 10e-9;
+  if (rounds->text() != nullptr) cost.neighbour_time = 20e-9;
   return cost;
 }
 
-// Of one reading, s: energies of all particles and pairs in doubles, and the watch's look at them. CPU time
-// of runs with readings less that of runs without, the least of two to four, over that of a step, on two
-// cores of an EPYC under the load of others: 2 to 3.5 steps in the template `tension`, 1 to 4 in `metal`, 4.5
-// in `sheet`, 6 to 7 in `gas`, whose list of pairs is made anew for each reading. The constants are no times
-// of their own: with the step's rate of the lattice engine they give the least of these for tension and metal
-// (2 and 1), and too little for sheet and gas. Engines that do not hand on the sums of their pairs take a
-// step's time for those.
-double reading_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
-  constexpr double kParticle = 70e-9, kPair = 3.5e-9;
+// Of a step, s, and of a particle: the lattice engine takes eight particles at a time with all that is near
+// any of them. So few neighbours cost as much as 23, or each of them as 4.5. Templates on one thread of an
+// EPYC: 50 ns in `sheet`, 90 in `tension`, 100 in `gas`, 200 in `metal` with its 55 neighbours.
+double particle_time(const EngineRow& engine, const Scene& scene, double neighbours) {
+  const double rate = cost_of(engine, scene).neighbour_time;
+  if (engine.here != Here::lattice) return rate * std::max(4.0, neighbours);
+  return rate * std::max({4.0, neighbours, std::min(4.5 * neighbours, 23.0)});
+}
+
+// Of the lattice engine's lists, s of a run: one is made anew when the fastest particle has gone some quarter
+// of a cell. Template `impact`: 227 of them, of 7636 particles in 233,000 cells, in 3.3 s.
+double lists_time(const EngineRow& engine, const Scene& scene, const Plan& plan, double steps) {
+  constexpr double kWay = 0.25, kParticle = 1e-6, kCell = 30e-9;
+  if (engine.here != Here::lattice) return 0;
+  double fastest = 0;  // m/s
+  for (const Vec3& v : scene.body.v) fastest = std::max(fastest, v.norm());
+  for (const ParticleType& type : scene.rule.types) fastest = std::max(fastest, type.velocity.norm());
+  const double way = fastest * scene.rule.dt * steps / plan.rule.cell_edge;
+  return way / kWay * (kParticle * plan.particles + kCell * plan.lattice.size());
+}
+
+// Of one reading of energies, s: a list of near pairs, the energies of all particles and pairs in doubles,
+// and the watch's look at them. On an EPYC under the load of others, all readings of a run less those of the
+// probes: 0.24 us a particle in the template `sheet`, 0.37 in `tension`, 0.6 in `drop`, 0.7 in `gas`, 1.1 in
+// `metal`. Engines that do not hand on the sums of their pairs take a step's time for those.
+double energies_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
+  constexpr double kParticle = 300e-9, kPair = 10e-9;
   const double sums = engine.here == Here::lattice ? 0 : cost_of(engine, scene).neighbour_time * neighbours;
   return particles * (kParticle + kPair * neighbours / 2 + sums);
+}
+
+// Of one reading of the probes, s. The lattice engine looks for the largest speed among all particles; others
+// make a state of them.
+double probes_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
+  constexpr double kParticle = 2e-9, kState = 40e-9, kProbed = 40e-9;
+  // Fields that go on from step to step are there as they are.
+  const bool sums = std::ranges::any_of(scene.probes, [](const Probe& probe) {
+    using enum Probe::Kind;
+    return probe.kind != displacement && probe.kind != field && probe.kind != crack;
+  });
+  double probed = 0;
+  for (const Probe& probe : scene.probes)
+    for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
+      probed += static_cast<double>(set->ids.size());
+  const double of_sums = sums ? cost_of(engine, scene).neighbour_time * neighbours : 0;
+  const double each = engine.here == Here::lattice ? kParticle : kState + of_sums;
+  return particles * each + probed * kProbed;
 }
 
 }  // namespace
@@ -103,6 +140,7 @@ RunSize run_size(const Scene& scene) {
   size.steps = scene.steps;
   size.frame_every = scene.frame_every;
   size.probe_every = scene.probe_every;
+  size.energy_every = scene.energy_every;
   return size;
 }
 
@@ -124,23 +162,28 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
                                  usable_cores())
                     : 1;
     if (size.ranks > 1) e.threads = std::min(size.ranks * std::max(1, size.threads), usable_cores());
-    // A particle costs something however few neighbours it has.
-    // So do cells at rest, which one thread passes over.
-    e.seconds = e.particle_steps * rates.neighbour_time * std::max(4.0, extent.neighbours) / e.threads +
+    // Cells at rest cost something too: one thread passes over them.
+    e.seconds = (e.particle_steps * particle_time(engine, scene, extent.neighbours) +
+                 lists_time(engine, scene, plan, rounds)) /
+                    e.threads +
                 rounds * cells * rates.cell_time;
     e.rate = e.seconds > 0 ? e.particle_steps / (e.seconds * e.threads) : 0;
   }
 
   const double samples = size.probe_every > 0 ? count_every(size.probe_every, size.steps) : 0;
+  const double of_energies = count_every(size.energy_every, size.steps);
   if (e.seconds > 0 && !scene.loading) {
-    e.reading = samples * reading_time(engine, scene, particles, extent.neighbours);
-    e.seconds += e.reading;
+    e.probing = samples * probes_time(engine, scene, particles, extent.neighbours);
+    e.energy_readings = of_energies;
+    e.energies = of_energies * energies_time(engine, scene, particles, extent.neighbours);
+    e.seconds += e.probing + e.energies;
   }
 
   constexpr double kCurvePoint = sizeof(uint64_t) + sizeof(double), kEnergies = 6, kOfProbe = 3;
   const double hashes = size.hash_every > 0 ? count_every(size.hash_every, size.steps) : 0;
   e.hashes = hashes * sizeof(uint64_t);
-  e.samples = samples * (kEnergies + kOfProbe * static_cast<double>(scene.probes.size())) * kCurvePoint;
+  e.samples =
+      (of_energies * kEnergies + samples * kOfProbe * static_cast<double>(scene.probes.size())) * kCurvePoint;
   const bool cycles = size.cycles || engine.cycles;
   e.spans = cycles ? steps * plan.nodes() * kPhases * sizeof(PhaseSpan) : 0;
   // Each rank reads the scene and keeps its lattice.
@@ -174,7 +217,7 @@ void add_estimate(Items& items, const Estimate& e) {
         "time", e.seconds, "s",
         fmt::format("an estimate: {:.2g} particle-steps/s on {} thread{}, and {:.2g} s for readings; what "
                     "rests costs less",
-                    e.rate * e.threads, e.threads, e.threads == 1 ? "" : "s", e.reading));
+                    e.rate * e.threads, e.threads, e.threads == 1 ? "" : "s", e.probing + e.energies));
   items.add("memory", static_cast<uint64_t>(e.memory), "B",
             fmt::format("an estimate: {}", in_bytes(e.memory)));
   items.add("disk", static_cast<uint64_t>(std::min(e.disk, 9e18)), "B",

@@ -13,7 +13,8 @@ namespace cuboct {
 struct RunSize {
   std::string engine = "lattice";
   uint64_t steps = 0;
-  uint64_t frame_every = 0, probe_every = 0;  // 0: first and last; 0: never
+  uint64_t frame_every = 0, energy_every = 0;  // 0: first and last
+  uint64_t probe_every = 0;                    // 0: never
   uint64_t hash_every = 100;
   bool cycles = false;    // spans of all phases of all nodes are kept
   bool states = true;     // frames hold particles, not pictures alone
@@ -28,9 +29,10 @@ RunSize run_size(const Scene& scene);
 struct Estimate {
   uint64_t load_steps = 0;  // of a static run: what follows is of one evaluation of forces; else 0
   double particle_steps = 0;
-  double seconds = 0;  // 0: no rate is known for this engine
-  double reading = 0;  // of them for the readings of probes and energies
-  double rate = 0;     // particle-steps/s of one thread that `seconds` counts with
+  double seconds = 0;                // 0: no rate is known for this engine
+  double probing = 0, energies = 0;  // of them for the readings of probes, and of energies
+  double energy_readings = 0;        // how many
+  double rate = 0;                   // particle-steps/s of one thread that `seconds` counts with
   int threads = 1;
   double memory = 0;  // bytes; of it what grows with the steps:
   double hashes = 0, spans = 0, samples = 0;

@@ -147,6 +147,7 @@ Ended run_once(const RunOptions& given) {
   if (options.view && every == 0) every = std::max<uint64_t>(1, request.steps / kViewed);
   check_size(options, loaded, request.steps, every);
   request.probes = every_so_often(scene.probe_every, request.steps);
+  request.energy_steps = every_so_often(scene.energy_every, request.steps);
   request.energies = request.totals = true;
   request.watch = !options.no_watch;
   request.until = true;

@@ -57,16 +57,20 @@ py::dict dict_of(const Body& body) {
   return state;
 }
 
-// (values, units) by name, with the steps at which all of them were read.
+// (values, units) by name, with the steps at which probes were read and those of energies, temperature and
+// pressure.
 py::tuple curves_of(const std::vector<Curve>& curves, double dt) {
   py::dict values, units;
-  const std::vector<uint64_t> steps = curves.empty() ? std::vector<uint64_t>() : curves.front().step;
-  std::vector<double> times;
-  for (const uint64_t step : steps) times.push_back(static_cast<double>(step) * dt);
-  values["step"] = array_of(steps);
-  values["time"] = array_of(times);
-  units["step"] = "1", units["time"] = "s";
+  const auto add_steps = [&](const std::string& of, const std::vector<uint64_t>& steps) {
+    std::vector<double> times;
+    for (const uint64_t step : steps) times.push_back(static_cast<double>(step) * dt);
+    const std::string step = of + "step", time = of + "time";
+    values[step.c_str()] = array_of(steps), units[step.c_str()] = "1";
+    values[time.c_str()] = array_of(times), units[time.c_str()] = "s";
+  };
+  add_steps("", curves.empty() ? std::vector<uint64_t>() : curves.front().step);
   for (const Curve& curve : curves) {
+    if (curve.name == "energy.kinetic") add_steps("energy.", curve.step);
     values[curve.name.c_str()] = array_of(curve.value);
     units[curve.name.c_str()] = curve.unit;
   }

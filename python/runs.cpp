@@ -70,6 +70,7 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   request.steps = *asked.steps;
   if (!asked.anyway) check_size(loaded, asked, request.steps);
   request.probes = every_so_often(scene.probe_every, request.steps);
+  request.energy_steps = every_so_often(scene.energy_every, request.steps);
   request.energies = request.totals = request.until = true;
   request.watch = !scene.loading;  // it looks for what goes wrong in motion
   request.cycles = asked.options.cycles;

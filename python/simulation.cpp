@@ -90,6 +90,7 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
   probe_every_ = whole_steps(scene_, probe_every.value_or(scene_.probe_every));
+  energy_every_ = probe_every ? probe_every_ : scene_.energy_every;
   if (real_ && !program_)
     start_ = scene_.body;
   else
@@ -102,7 +103,7 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   const EngineKind kind = real_ ? real_kind(engine_name_, scene_, setup_.plan, false)
                                 : fixed_kind(engine_name_, scene_, setup_.plan);
   meter_.emplace(scene_, kind.initial, MeterOptions{.energies = true, .threads = options.threads});
-  if (probe_every_ > 0) read_probes();
+  if (probe_every_ > 0) read_probes(true);
 }
 
 void Simulation::make_engine() {
@@ -181,17 +182,21 @@ void Simulation::go_to(uint64_t end, bool until) {
     const uint64_t asked = piece(end - now()), wanted = now() + asked;
     advance(asked);
     if (now() < wanted) continue;  // an interrupt
-    if (probe_every_ > 0 && now() % probe_every_ == 0) read_probes();
+    if (probe_every_ > 0 && now() % probe_every_ == 0)
+      read_probes(now() == scene_.steps || (energy_every_ > 0 && now() % energy_every_ == 0));
   }
   if (interrupted()) throw Interrupted();
 }
 
 const Reading& Simulation::reading() {
-  if (!reading_) reading_ = engine_->read(meter_->asked(false));
+  if (!reading_) reading_ = engine_->read(meter_->asked({}, false));
   return *reading_;
 }
 
-void Simulation::read_probes() { meter_->add(reading()); }
+void Simulation::read_probes(bool energies) {
+  const Meter::Parts parts{.energies = energies};
+  meter_->add(energies || reading_ ? reading() : engine_->read(meter_->asked(parts, false)), parts);
+}
 
 const Body& Simulation::present() {
   if (present_) return *present_;

@@ -39,7 +39,7 @@ struct EnergiesNow {
 class Simulation {
  public:
   // An empty `engine`: the one that the scene asks for. `probe_every`: steps between two readings of probes
-  // and energies, 0: none; nothing: the scene's. `anyway`: though it needs more memory than is free.
+  // and energies, 0: none; nothing: the scene's, of each. `anyway`: though it needs more memory than is free.
   Simulation(const Sources& sources, const std::string& engine, const EngineOptions& options,
              std::optional<uint64_t> probe_every, bool anyway = false);
 
@@ -81,7 +81,7 @@ class Simulation {
   bool is_over() const;
   void advance(uint64_t steps);
   [[noreturn]] void stop(const StopReason& reason);
-  void read_probes();
+  void read_probes(bool energies);
   const Reading& reading();
   const Body& present();
   const StrainMeter& strain();
@@ -97,8 +97,9 @@ class Simulation {
   std::string engine_name_;
   EngineOptions options_;
   Sources sources_;
-  bool real_ = false, program_ = false;        // program_: the engine is one
-  uint64_t first_step_ = 0, probe_every_ = 0;  // of the engine
+  bool real_ = false, program_ = false;  // program_: the engine is one
+  uint64_t first_step_ = 0;              // of the engine
+  uint64_t probe_every_ = 0, energy_every_ = 0;
   emu::LatticeChoice lattice_;
   std::unique_ptr<Engine> engine_;
   std::optional<Meter> meter_;

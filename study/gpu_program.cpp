@@ -33,6 +33,7 @@ std::string scene_text(const Case& c, const GpuRequest& request) {
                        {"run.dt", dt},
                        {"run.steps", std::to_string(request.scene_steps)},
                        {"run.probe_every", std::to_string(request.probe_every)},
+                       {"run.energy_every", std::to_string(request.probe_every)},
                        {"run.frame_every", "0"}});
 }
 

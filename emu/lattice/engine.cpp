@@ -255,6 +255,26 @@ std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_
 
 std::vector<Int3> LatticeEngine::kicks() { return impl_->kicks(); }
 
+bool LatticeEngine::kicks(std::span<const uint32_t> ids, std::span<Int3> to) {
+  if (!impl_->summed_) impl_->summed_ = impl_->sum_pairs();
+  if (!impl_->summed_) return false;
+  for (size_t k = 0; k < ids.size(); ++k) to[k] = impl_->sums_[impl_->index_(ids[k])];
+  return true;
+}
+
+Particle LatticeEngine::particle(uint32_t id) const { return impl_->particle(impl_->index_(id)); }
+
+double LatticeEngine::largest_speed() const {
+  const Impl& impl = *impl_;
+  std::vector<double> most(impl.blocks_.size() + 1);
+  for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
+    for (const auto& v : impl.particles_.v)
+      for (uint32_t p = impl.blocks_[b].begin; p < impl.blocks_[b].end; ++p)
+        most[b] = std::max(most[b], std::abs(v[p]));
+  });
+  return std::ldexp(*std::ranges::max_element(most), -impl.plan_.rule.widths.velocity_frac());
+}
+
 State LatticeEngine::state() const {
   State state{impl_->step_, impl_->everyone(), impl_->fields()};
   if (impl_->rounds_ && impl_->rounds_->bonded()) impl_->give_bonds(state);

@@ -67,6 +67,10 @@ class LatticeEngine {
   // By id, of all on rank 0: summed_kicks of the state, as the next step sums them. Empty where some kick
   // does not fit its width: the next step fails.
   std::vector<Int3> kicks();
+  // Those of some particles (ids), as many as `to` holds; false where some kick does not fit. Not with ranks.
+  bool kicks(std::span<const uint32_t> ids, std::span<Int3> to);
+  Particle particle(uint32_t id) const;  // not with ranks
+  double largest_speed() const;          // of this rank, along an axis: cells per step
   void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by cell, then slot; of
                                                                               // all, on rank 0
   uint64_t hash() const;                                                      // hash_of(lattice, state())

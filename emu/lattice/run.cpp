@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "emu/lattice/run.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -25,6 +26,8 @@ class Runner : public StateEngine {
   uint64_t step_count() const override { return engine_->step_count(); }
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
   uint64_t hash() override { return engine_->hash(); }
+  Reading read(const Asked& asked) override;
+  double largest_speed() override { return std::max(largest_speed_, StateEngine::largest_speed()); }
   Momentum momentum() override { return {engine_->momentum(), {}}; }
   std::vector<PhaseSpan> phase_times() override { return std::exchange(spans_, {}); }
   Counters counters() override;
@@ -51,6 +54,7 @@ class Runner : public StateEngine {
   std::array<uint64_t, 3> earlier_{};  // counts of the runs before this one, up to the checkpoint
   CellSlots slots_;
   std::vector<PhaseSpan> spans_;
+  double largest_speed_ = 0;  // cells per step, of the states that were read without being made
 };
 
 Runner::Runner(const Scene& scene, const Plan& plan, const LatticeChoice& choice, CheckpointReader* from,
@@ -100,6 +104,19 @@ void Runner::step() {
   const size_t row = size_t{plan_.nodes()} * kPhases;
   spans_.resize(spans_.size() + row);
   timing_->step(slots_, engine_->leaving(), std::span(spans_).last(row));
+}
+
+// Probes ask for some particles: without a state of all.
+Reading Runner::read(const Asked& asked) {
+  if (asked.energies || ranks_ || failed_) return StateEngine::read(asked);
+  std::vector<Int3> kicks(asked.ids.size());
+  if (takes_kicks(asked) && !engine_->kicks(asked.ids, kicks)) return StateEngine::read(asked);
+  Reading reading;
+  reading.step = step_count();
+  const ParticleReader particles(plan_.rule, plan_.lattice, plan_.origin, asked);
+  for (size_t k = 0; k < kicks.size(); ++k) particles.add(engine_->particle(asked.ids[k]), kicks[k], reading);
+  largest_speed_ = std::max(largest_speed_, engine_->largest_speed());
+  return reading;
 }
 
 std::pair<bool, bool> Runner::agreed(bool stop, bool save) {

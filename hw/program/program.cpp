@@ -47,6 +47,7 @@ void settle(const EngineProgram& program, Parsed& parsed, const Scene& scene) {
   if (run.watch) run.energies = true;
   // Energies are read at the first and the last step too.
   run.probes = run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
+  if (run.energies) run.energy_steps = every_so_often(scene.energy_every, run.steps);
   run.totals = !options.bench;
   run.cycles |= program.abilities.always_cycles;
   // A benchmark times steps: its one hash is the last state's.

@@ -150,9 +150,6 @@ double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * ru
 
 Vec3 force_of(const FixedRule& rule, const Int3& kick) { return newtons_per_kick(rule) * as_real(kick); }
 
-namespace {
-
-// `unit`: velocity_unit of the rule.
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, double unit) {
   const FixedType& type = rule.types[particle.type];
   Vec3 v;
@@ -168,8 +165,6 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
   }
   return v;
 }
-
-}  // namespace
 
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick) {
   return velocity_of(rule, particle, kick, velocity_unit(rule));
@@ -450,7 +445,11 @@ double speed_of(const Curve& length, const Probe& probe) {
 }  // namespace
 
 void ProbeMeter::add(const Sample& sample) {
-  for (size_t i = 0; i < moved_.size(); ++i) {
+  const bool moves = std::ranges::any_of(probes_, [](const Probe& probe) {
+    using enum Probe::Kind;
+    return probe.kind == displacement || probe.kind == stress_strain || probe.kind == crack;
+  });
+  for (size_t i = 0; moves && i < moved_.size(); ++i) {
     moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
     latest_[i] = sample.x[i];
   }

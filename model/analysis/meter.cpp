@@ -35,20 +35,23 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
   if (options.energies && watch) watch_.emplace(scene, options.table_error, options.threads);
 }
 
-Asked Meter::asked(bool look) {
-  return {.ids = ids_,
-          .forces = forces_,
-          .velocities = velocities_,
-          .energies = energy_.wanted(),
-          .fields = fields_,
-          .volume = energy_.volume(),
-          .watch = look && watch_ ? &*watch_ : nullptr};
+Asked Meter::asked(const Parts& parts, bool look) {
+  Asked asked;
+  if (parts.energies && energy_.wanted()) {
+    asked.energies = true;
+    asked.volume = energy_.volume();
+    if (look && watch_) asked.watch = &*watch_;
+  }
+  if (!parts.probes) return asked;
+  asked.ids = ids_;
+  asked.forces = forces_, asked.velocities = velocities_, asked.fields = fields_;
+  return asked;
 }
 
-void Meter::add(const Reading& reading) {
-  if (!probes_.curves().empty())
+void Meter::add(const Reading& reading, const Parts& parts) {
+  if (parts.probes && !probes_.curves().empty())
     probes_.add({reading.step, reading.x, reading.force, reading.v, reading.fields});
-  energy_.add(reading.step, reading.energies, reading.stress);
+  if (parts.energies) energy_.add(reading.step, reading.energies, reading.stress);
 }
 
 std::vector<Curve> Meter::curves() const {
@@ -59,8 +62,10 @@ std::vector<Curve> Meter::curves() const {
 
 std::vector<double> Meter::latest() const {
   std::vector<double> values;
-  for (const std::vector<Curve>* part : {&probes_.curves(), &energy_.curves()})
-    for (const Curve& curve : *part) values.push_back(curve.value.back());
+  const std::vector<Curve>&probes = probes_.curves(), &energies = energy_.curves();
+  for (const Curve& curve : probes) values.push_back(curve.value.back());
+  if (energies.empty() || (!probes.empty() && energies[0].step.back() < probes[0].step.back())) return values;
+  for (const Curve& curve : energies) values.push_back(curve.value.back());
   return values;
 }
 

@@ -26,16 +26,20 @@ class Meter {
   // reference to `scene`.
   Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, const MeterOptions& options);
 
-  // What is to be read of the engine. With `look`, the watch sees the state too.
-  Asked asked(bool look = true);
+  // Of the curves, those that a reading is for.
+  struct Parts {
+    bool probes = true, energies = true;
+  };
+  // What is to be read of the engine. With `look`, the watch sees the state too, where energies are read.
+  Asked asked(const Parts& parts, bool look);
 
   // Readings come in the order of steps.
-  void add(const Reading& reading);
+  void add(const Reading& reading, const Parts& parts);
 
   // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
   // the scene has them, temperature in K (reduced units: J) and pressure in Pa.
   std::vector<Curve> curves() const;
-  // The last value of each curve, once there is one.
+  // The last value of each curve, once there is one; of probe curves alone where energies are older.
   std::vector<double> latest() const;
 
   // After the last state, before findings are read.

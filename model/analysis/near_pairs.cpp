@@ -15,7 +15,7 @@ namespace {
 
 // A list costs as much as some kListing states with it, and its pairs grow as its volume. With u cutoffs of
 // motion between two states a skin of s cutoffs serves s/(2 u) of them: (1 + s)^3 + kListing 2 u/s is least
-// near s = sqrt(2 kListing u/3).
+// near s = sqrt(2 kListing u/3). Where no skin serves a second state, the thinnest costs least.
 constexpr double kListing = 20, kLeastSkin = 0.02, kMostSkin = 0.3;
 constexpr double kFirstSkin = 0.1;  // of a run of which nothing is known
 
@@ -62,8 +62,12 @@ void NearPairs::take(const State& state) {
     if (2 * far <= skin_) return;
     each = far / static_cast<double>(states_) / cutoff_;
   }
-  skin_ = cutoff_ *
-          (each < 0 ? kFirstSkin : std::clamp(std::sqrt(2 * kListing * each / 3), kLeastSkin, kMostSkin));
+  if (each < 0)
+    skin_ = kFirstSkin * cutoff_;
+  else if (2 * each > kMostSkin)
+    skin_ = kLeastSkin * cutoff_;
+  else
+    skin_ = cutoff_ * std::clamp(std::sqrt(2 * kListing * each / 3), kLeastSkin, kMostSkin);
   list();
 }
 

@@ -1,7 +1,31 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/state_reader.h"
 
+#include <cmath>
+
 namespace cuboct {
+
+ParticleReader::ParticleReader(const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
+                               const Asked& asked)
+    : fixed_(fixed),
+      lattice_(lattice),
+      origin_(origin),
+      forces_(asked.forces),
+      velocities_(asked.velocities),
+      length_(std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac())),
+      speed_(velocity_unit(fixed)),
+      newtons_(newtons_per_kick(fixed)) {}
+
+void ParticleReader::add(const Particle& particle, const Int3& kick, Reading& reading) const {
+  const Cell& cell = lattice_.cell(particle.cell);
+  Vec3 x, force = Vec3::Zero();
+  for (int a = 0; a < 3; ++a) {
+    x[a] = origin_[a] + cell[a] * fixed_.cell_edge + static_cast<double>(particle.x[a]) * length_;
+    if (forces_) force[a] = newtons_ * static_cast<double>(kick[a]);
+  }
+  reading.x.push_back(x), reading.force.push_back(force);
+  if (velocities_) reading.v.push_back(velocity_of(fixed_, particle, kick, speed_));
+}
 
 StateReader::StateReader(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                          int threads)
@@ -16,12 +40,9 @@ Reading StateReader::read(const State& state, const Asked& asked, std::vector<In
   Reading reading;
   reading.step = state.step;
   if (takes_kicks(asked) && kicks.empty()) kicks = summed_kicks(fixed_, lattice_, state, threads_);
-  for (const uint32_t id : asked.ids) {
-    const Particle& particle = state.particles[id];
-    reading.x.push_back(position_of(fixed_, lattice_, origin_, particle));
-    reading.force.push_back(force_of(fixed_, kicks.empty() ? Int3{} : kicks[id]));
-    if (asked.velocities) reading.v.push_back(velocity_of(fixed_, particle, kicks[id]));
-  }
+  const ParticleReader particles(fixed_, lattice_, origin_, asked);
+  for (const uint32_t id : asked.ids)
+    particles.add(state.particles[id], kicks.empty() ? Int3{} : kicks[id], reading);
   if (!asked.energies) return reading;
   near_.take(state);
   ClosestPair closest;

@@ -18,6 +18,25 @@ Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& s
                    const std::vector<Int3>& kicks, const NearPairs& near,
                    const std::vector<PairAcross>& across);
 
+// `unit`: velocity_unit of the rule.
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, double unit);
+
+// What is asked of single particles.
+class ParticleReader {
+ public:
+  // References outlive it.
+  ParticleReader(const FixedRule& fixed, const Lattice& lattice, const Vec3& origin, const Asked& asked);
+  // `kick`: the sum of its pairs; zero where nobody asks.
+  void add(const Particle& particle, const Int3& kick, Reading& reading) const;
+
+ private:
+  const FixedRule& fixed_;
+  const Lattice& lattice_;
+  const Vec3& origin_;
+  bool forces_, velocities_;
+  double length_, speed_, newtons_;  // of a unit of position, velocity, kick
+};
+
 // Reads the states of one run, in the order of their steps.
 class StateReader {
  public:

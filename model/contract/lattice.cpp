@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "model/contract/lattice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 #include <iterator>
 #include <tuple>
-#include <unordered_set>
+#include <unordered_map>
+
+#include "model/base/error.h"
 
 namespace cuboct {
 namespace {
@@ -23,6 +28,65 @@ struct CellHash {
     return hash ^ hash >> 32;
   }
 };
+
+// A set of cells in blocks of 4 x 4 x 4, a bit for each: a cell's neighbours are found in few blocks.
+class CellBlocks {
+ public:
+  // Whether it is new.
+  bool add(const Cell& c) {
+    const Cell block = block_of(c);
+    if (last_ == nullptr || last_->first != block) last_ = &*bits_.try_emplace(block, 0).first;
+    const uint64_t before = last_->second;
+    last_->second |= bit_in_block(c);
+    return last_->second != before;
+  }
+
+  // Remembers the blocks that it has looked up: for as long as no cell is added.
+  class Look {
+   public:
+    explicit Look(const CellBlocks& blocks) : blocks_(blocks) {}
+    bool has(const Cell& c) {
+      const Cell block = block_of(c);
+      // Blocks side by side have places of their own.
+      Seen& seen = seen_[static_cast<size_t>((block[0] & 1) | (block[1] & 1) << 1 | (block[2] & 1) << 2)];
+      if (!seen.known || seen.block != block) {
+        const auto found = blocks_.bits_.find(block);
+        seen = {true, block, found == blocks_.bits_.end() ? 0 : found->second};
+      }
+      return (seen.bits & bit_in_block(c)) != 0;
+    }
+
+   private:
+    struct Seen {
+      bool known = false;
+      Cell block{};
+      uint64_t bits = 0;
+    };
+    const CellBlocks& blocks_;
+    std::array<Seen, 8> seen_;
+  };
+
+ private:
+  static Cell block_of(const Cell& c) { return {c[0] >> 2, c[1] >> 2, c[2] >> 2}; }
+  static uint64_t bit_in_block(const Cell& c) {
+    return uint64_t{1} << ((c[0] & 3) | (c[1] & 3) << 2 | (c[2] & 3) << 4);
+  }
+  std::unordered_map<Cell, uint64_t, CellHash> bits_;
+  std::pair<const Cell, uint64_t>* last_ = nullptr;
+};
+
+// The ways between neighbours fill the box around all that hangs together: of a rod that slants its length to
+// the third. So many cells are made of those that were asked for, and so many in any case.
+constexpr size_t kMostClosed = 64, kAlwaysClosed = 2'000'000;
+
+[[noreturn]] void refuse_closure(size_t asked, size_t most) {
+  throw InputError(
+      fmt::format("more than {} cells are needed around the {} that particles reach: a body that "
+                  "slants takes all cells of the box around it",
+                  most, asked),
+      "turn its length along an axis, or a larger pitch")
+      .about({"geometry", "packing.pitch", "box", "particle"});
+}
 
 constexpr int bit_of(int dx, int dy, int dz) { return 13 + dx + 3 * dy + 9 * dz; }
 
@@ -131,22 +195,6 @@ void Lattice::missing_between(size_t row, int dz, int dy, std::vector<Cell>& mis
   }
 }
 
-// The cells around `cell`, itself included: bit bit_of(dx, dy, dz) is set where the lattice has that one.
-// The cell's own row may not be there yet.
-uint32_t Lattice::present_around(const Cell& cell) const {
-  uint32_t present = 0;
-  for (int dz = -1; dz <= 1; ++dz)
-    for (int dy = -1; dy <= 1; ++dy) {
-      const Cell at = wrapped({0, cell[1] + dy, cell[2] + dz});
-      const size_t row = row_at(at[2], at[1]);
-      if (row + 1 >= rows_.size()) continue;
-      const Span beside{rows_[row].first, rows_[row + 1].first};
-      for (int dx = -1; dx <= 1; ++dx)
-        if (in_row(beside, wrapped({cell[0] + dx, 0, 0})[0]) != kNoCell) present |= 1u << bit_of(dx, dy, dz);
-    }
-  return present;
-}
-
 // A cell that is added may start further ways, so this goes on until nothing is missing. After the first
 // round only what is around new cells can be.
 void Lattice::close() {
@@ -156,30 +204,32 @@ void Lattice::close() {
     for (int dz = -1; dz <= 1; ++dz)
       for (int dy = -1; dy <= 1; ++dy)
         if (dy != 0 || dz != 0) missing_between(row, dz, dy, missing);
-  // Kept apart from the sorted cells until the last round: along a needle there are as many rounds as cells.
-  std::unordered_set<Cell, CellHash> added;
+  sort_unique(missing);
+  if (missing.empty()) return;
+  CellBlocks all;
+  for (const Cell& c : cells_) all.add(c);
   const auto beside = [this](const Cell& c, int bit) {
     return wrapped({c[0] + bit % 3 - 1, c[1] + bit / 3 % 3 - 1, c[2] + bit / 9 - 1});
   };
-  for (sort_unique(missing); !missing.empty(); sort_unique(missing)) {
-    added.insert(missing.begin(), missing.end());
+  // The sorted cells get them after the last round: along a needle there are as many rounds as cells.
+  const auto middle = static_cast<ptrdiff_t>(cells_.size());
+  const size_t most = std::max(kAlwaysClosed, kMostClosed * cells_.size());
+  for (; !missing.empty(); sort_unique(missing)) {
+    for (const Cell& c : missing)
+      if (all.add(c)) cells_.push_back(c);
+    if (cells_.size() > most) refuse_closure(static_cast<size_t>(middle), most);
+    CellBlocks::Look look(all);
     std::vector<Cell> next;
     for (const Cell& c : missing) {
-      uint32_t present = present_around(c);
+      uint32_t present = 0, needed = 0;
       for (int bit = 0; bit < 27; ++bit)
-        if ((present >> bit & 1) == 0 && added.contains(beside(c, bit))) present |= 1u << bit;
-      uint32_t needed = 0;
-      for (int bit = 0; bit < 27; ++bit)
-        if ((present >> bit & 1) != 0) needed |= kWays[static_cast<size_t>(bit)];
+        if (look.has(beside(c, bit))) present |= 1u << bit, needed |= kWays[static_cast<size_t>(bit)];
       needed &= ~present;
       for (int bit = 0; needed >> bit != 0; ++bit)
         if ((needed >> bit & 1) != 0) next.push_back(beside(c, bit));
     }
     missing = std::move(next);
   }
-  if (added.empty()) return;
-  const auto middle = static_cast<ptrdiff_t>(cells_.size());
-  cells_.insert(cells_.end(), added.begin(), added.end());
   std::sort(cells_.begin() + middle, cells_.end(), before);
   std::inplace_merge(cells_.begin(), cells_.begin() + middle, cells_.end(), before);
   index_rows();

@@ -54,7 +54,6 @@ class Lattice {
   bool neighbours_in_x(const Span& row, uint32_t at, int32_t x) const;
   void index_rows();
   void close();
-  uint32_t present_around(const Cell& cell) const;
   void missing_between(size_t row, int dz, int dy, std::vector<Cell>& missing) const;
   void link();
 

@@ -28,6 +28,8 @@ class RealEngine {
   virtual uint64_t lists_made() const = 0;
   // Of a rule of several rounds, at the state of now; null: pairs.
   virtual const RoundsTerms* terms() const { return nullptr; }
+  // The same without the work of its rounds: right in what goes on from step to step.
+  virtual const RoundsTerms* kept_terms() const { return nullptr; }
   // What a checkpoint keeps besides x, v and u.
   virtual std::vector<uint64_t> memory() const { return {}; }
   virtual void recall(const std::vector<uint64_t>&) {}

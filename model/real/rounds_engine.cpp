@@ -66,6 +66,7 @@ class RoundsEngine final : public RealEngine {
     refresh();
     return terms_.get();
   }
+  const RoundsTerms* kept_terms() const override { return terms_.get(); }
   void give_way() override { evaluate(true); }
   double largest_speed() const override { return fastest_; }
   const NearList& list() const override { throw std::logic_error("a rule of rounds has no list of pairs"); }

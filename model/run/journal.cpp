@@ -79,12 +79,13 @@ Journal::Journal(const std::string& path, uint64_t plan_hash, bool displaced, co
         trace.state_hash.push_back(in.word());
         break;
       case kSample:
-        if (!trace.curves.empty() && trace.curves.size() != words)
-          throw InputError(fmt::format("{} is damaged: its samples differ in length", path));
-        trace.curves.resize(words);
-        for (Curve& curve : trace.curves) {
-          curve.step.push_back(step);
-          curve.value.push_back(in.number());
+        // The first has all curves.
+        if (trace.curves.empty()) trace.curves.resize(words);
+        if (words > trace.curves.size())
+          throw InputError(fmt::format("{} is damaged: a sample has more curves than the first", path));
+        for (size_t k = 0; k < words; ++k) {
+          trace.curves[k].step.push_back(step);
+          trace.curves[k].value.push_back(in.number());
         }
         break;
       case kCycles:

@@ -33,7 +33,7 @@ class Journal {
   Journal(const std::string& path, uint64_t plan_hash, bool displaced, const WordMark& end, Trace& trace);
 
   void hash(uint64_t step, uint64_t hash);
-  void sample(uint64_t step, std::span<const double> values);  // one per curve
+  void sample(uint64_t step, std::span<const double> values);  // of each curve, later of the first ones
   void cycles(uint64_t step, std::span<const PhaseSpan> spans);
   void frame(const RunState& state);
 

@@ -68,7 +68,10 @@ class Loop {
   uint64_t next_stop() const;
   void advance(uint64_t steps);
   void record();
-  void measure(bool look, bool add);
+  void measure(const Meter::Parts& parts, bool look);
+  const std::vector<uint64_t>& energy_steps() const {
+    return request_.energy_steps.empty() ? request_.probes : request_.energy_steps;
+  }
   void keep();
   void journal(const std::function<void(Journal&)>& write);
   void save();
@@ -116,8 +119,8 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
               .watch = request.watch,
               .table_error = kind.table_error,
               .threads = kind.threads}),
-      looks_(kind.looks ? kind.looks(request.probes) : request.probes),
-      log_({kind.name, request.steps, kind.relaxes ? 0 : kind.particles, request.probes, request.log}, scene,
+      looks_(kind.looks ? kind.looks(energy_steps()) : energy_steps()),
+      log_({kind.name, request.steps, kind.relaxes ? 0 : kind.particles, energy_steps(), request.log}, scene,
            meter_.curves()),
       piece_(kind.in_pieces || request.checkpoint.every_seconds > 0 || request.log == LogRows::seconds ||
                      stderr_is_terminal()
@@ -167,7 +170,11 @@ void Loop::check_alike(const CheckpointHead& head) const {
   };
   if (journal_->frame_steps() != until_now(request_.frames)) refuse("frames at other steps");
   const std::vector<Curve> curves = meter_.curves();
-  if (!curves.empty() && curves.front().step != until_now(request_.probes))
+  if (curves.empty()) return;
+  // Probes come first, energies last.
+  if (curves.back().step != until_now(request_.energies ? energy_steps() : request_.probes))
+    refuse(request_.energies ? "energies read at other steps" : "probes read at other steps");
+  if (curves.front().step != until_now(scene_.probes.empty() ? energy_steps() : request_.probes))
     refuse("probes read at other steps");
 }
 
@@ -218,7 +225,8 @@ void Loop::record() {
     journal([&](Journal& to) { to.hash(step, trace_.state_hash.back()); });
   }
   if (among(request_.probes, step)) {
-    measure(among(looks_, step), true);
+    const bool energies = request_.energies && among(energy_steps(), step);
+    measure({.probes = true, .energies = energies}, among(looks_, step));
     look_for_end();
     if (leads() && journal_)
       if (const std::vector<double> values = meter_.latest(); !values.empty())
@@ -243,11 +251,12 @@ bool Loop::reached() {
   return leads() ? trace_.reached.has_value() : told;
 }
 
-// `add`: to the curves; else the watch alone looks.
-void Loop::measure(bool look, bool add) {
-  const Reading reading = engine_->read(meter_.asked(look));
+// `look`: the watch sees the state too, whatever goes into the curves.
+void Loop::measure(const Meter::Parts& parts, bool look) {
+  const Meter::Parts read{.probes = parts.probes, .energies = parts.energies || look};
+  const Reading reading = engine_->read(meter_.asked(read, look));
   if (look) looked_ = engine_->step_count();
-  if (add && leads()) meter_.add(reading);
+  if (leads()) meter_.add(reading, parts);
 }
 
 void Loop::keep() {
@@ -391,7 +400,8 @@ void Loop::go_back_to(uint64_t step) {
 void Loop::finish() {
   const uint64_t last = trace_.steps_done;
   const bool frame = request_.last && !request_.frames.empty() && !among(request_.frames, last);
-  const bool sample = request_.last && request_.energies && !among(request_.probes, last);
+  const bool probes = request_.last && request_.energies && !among(request_.probes, last);
+  const bool sample = request_.last && request_.energies && !among(energy_steps(), last);
   const bool look = request_.last && meter_.watch() && looked_ != last;
   const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
   const bool bonds = request_.last && !request_.frames.empty() &&
@@ -400,7 +410,7 @@ void Loop::finish() {
   {
     const Timed timed({&trace_.seconds, &besides_});
     if (hash) trace_.state_hash.push_back(engine_->hash());
-    if (sample || look) measure(look || sample, sample);
+    if (sample || look) measure({.probes = probes, .energies = sample}, look || sample);
     if (frame) {
       RunState last_frame = engine_->frame(request_.forces);
       if (leads()) give(request_, std::move(last_frame), trace_);

@@ -36,6 +36,8 @@ struct RunRequest {
   // Takes the kept states as they come, those before a checkpoint again; without one the trace holds them.
   std::function<void(const RunState&)> keep;
   bool energies = false;  // read with the probes, and at the last state
+  // Of the probes' steps, those at which energies are read, ascending; empty: all.
+  std::vector<uint64_t> energy_steps;
   bool watch = false;     // look for what fails wherever energies are read (model/analysis/watch.h)
   bool cycles = false;    // keep phase times, where the engine has them
   bool integers = false;  // frames are those of Engine::integers
@@ -66,7 +68,7 @@ struct EngineKind {
   bool saves = false;                     // leaves checkpoints
   bool relaxes = false;                   // the scene's static loading: no other engine runs such a scene
   std::function<Vec3(uint32_t)> initial;  // m, from where a particle's displacement counts
-  // Of the probes' steps, those at which the watch looks; empty: at all.
+  // Of the steps at which energies are read, those at which the watch looks; empty: at all.
   std::function<std::vector<uint64_t>(const std::vector<uint64_t>&)> looks;
   // From the start, or from a checkpoint; `cycles`: with its timing. Throws RunError where a cell would hold
   // more than its capacity.

@@ -9,6 +9,7 @@
 
 #include "model/analysis/body_reading.h"
 #include "model/base/error.h"
+#include "model/program/rule_program.h"
 #include "model/real/rounds_engine.h"
 #include "model/run/bond_counters.h"
 #include "model/run/reference_engine.h"
@@ -73,7 +74,8 @@ Reading RoundsRun::read(const Asked& asked) {
   const bool half_step = options_->integrator == Integrator::semi_implicit_euler;
   const double late = half_step ? scene_.rule.dt / 2 : 0;
   const Body& now = body();
-  const std::vector<Vec3> force = engine_->forces();
+  std::vector<Vec3> force;
+  if (asked.forces || asked.velocities || asked.energies) force = engine_->forces();
   Reading reading = read_body(scene_.rule, now, force, late, asked);
   reading.step = step_;
   if (asked.fields) reading.fields = fields_of(asked.ids);
@@ -86,7 +88,11 @@ Reading RoundsRun::read(const Asked& asked) {
 }
 
 std::vector<std::vector<double>> RoundsRun::fields_of(std::span<const uint32_t> ids) {
-  const std::vector<std::vector<double>> all = engine_->terms()->shown();
+  // Fields that steps hand on are there without an evaluation of the rounds.
+  const RuleProgram* text = rounds_of(scene_.rule)->text();
+  const bool kept = text && std::ranges::all_of(text->particle,
+                                                [](const auto& field) { return field.kept || !field.shown; });
+  const std::vector<std::vector<double>> all = (kept ? engine_->kept_terms() : engine_->terms())->shown();
   std::vector<std::vector<double>> fields;
   for (const std::vector<double>& values : all) {
     const size_t numbers = values.size() / body_.size();

@@ -12,6 +12,7 @@
 #include "model/contract/law.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/file_kind.h"
+#include "model/scene/readings.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
 #include "model/solid/vibrations.h"
@@ -189,13 +190,24 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
     scene.loading = read_static(*stage, scene);
   else if (usual_static)
     scene.loading = read_static(run, scene);
-  const uint64_t least = scene.loading ? scene.loading->every : 1;
-  scene.probe_every = every("probe_every", scene.probes.empty() ? 0 : std::max(least, whole / 500));
+  const bool energies = run.has("energy_every") || (stage && stage->has("energy_every"));
+  const uint64_t energy_every = every("energy_every", 0), least = scene.loading ? scene.loading->every : 1;
+  scene.probe_every =
+      every("probe_every", scene.probes.empty() ? energy_every : std::max(least, whole / 500));
   scene.frame_every = every("frame_every", 0);
   if (scene.loading) {
     scene.probe_every = scene.loading->whole(scene.probe_every);
     scene.frame_every = scene.loading->whole(scene.frame_every);
   }
+  if (energy_every > 0 && scene.probe_every == 0)
+    run.fail("'energy_every' needs readings: 'probe_every' is 0");
+  // A load step takes hundreds of evaluations: beside it no reading counts.
+  if (energies)
+    scene.energy_every = whole_multiple(energy_every, scene.probe_every);
+  else if (scene.loading || scene.probes.empty() || scene.probe_every == 0)
+    scene.energy_every = scene.probe_every;
+  else
+    scene.energy_every = usual_energy_every(whole, scene.probe_every);
   if (const auto accuracy = run.find("accuracy"))
     scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
   if (const auto strain = run.find("expected_strain"))

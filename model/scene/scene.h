@@ -146,8 +146,9 @@ struct Scene {
   double expected_strain = 0;  // 0: what the scene's motion tells (model/analysis/motion.h)
   std::vector<Probe> probes;
   uint64_t steps = 0;
-  uint64_t probe_every = 0;  // 0: never
-  uint64_t frame_every = 0;  // 0: first and last only
+  uint64_t probe_every = 0;   // 0: never
+  uint64_t energy_every = 0;  // a multiple of probe_every; 0: first and last only
+  uint64_t frame_every = 0;   // 0: first and last only
   std::optional<Until> until;
   std::optional<StaticLoading> loading;  // probes and frames are then those of whole load steps
   Places places;                         // of the file's keys

@@ -42,7 +42,7 @@ class Run:
     hashes: NDArray[np.uint64]  # at steps 0, hash_every, 2 hash_every, ..., and the last
     hash_every: int
     plan_hash: str
-    curves: dict[str, NDArray[Any]]  # "step", "time" (s), probes and energies by name
+    curves: dict[str, NDArray[Any]]  # "step", "time" (s), probes by name; "energy.step", "energy.time", energies, temperature, pressure
     units: dict[str, str]  # of the curves
     frames: list[Frame]
     cycles: NDArray[np.uint64] | None  # [step, node, phase, (first, last)], of engines that count them

@@ -193,7 +193,8 @@ class Simulation:
     def curves(self) -> dict[str, NDArray[Any]]:
         """What probes and energies read so far: "step", "time" (s), then the curves by name, such as "tension.stress".
 
-        Units: `units`. Curves of energies are called energy.kinetic and so on. They are read every `probe_every` steps.
+        Units: `units`. Curves of energies are called energy.kinetic and so on. They are read every `probe_every` steps; where the scene says
+        how often, energies, temperature and pressure have "energy.step" and "energy.time" of their own.
         """
         return self._of.curves()[0]
 

@@ -58,6 +58,8 @@ std::vector<StaticSample> samples_of(const LearnStudy& study, const AtomCell& sh
   }
   try {
     study::work_off(std::move(pieces), jobs, "samples", true);
+  } catch (const InputError&) {
+    throw;  // of a study that is refused nothing is written
   } catch (...) {
     kept.save();
     throw;

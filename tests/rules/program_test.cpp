@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "model/base/error.h"
 #include "model/program/program_rule.h"
@@ -152,6 +153,27 @@ TEST(Program, ALookChangesNothing) {
     alone.advance(2, nullptr);
   }
   EXPECT_EQ(field_in(looked), field_in(alone));
+}
+
+// With an evaluation of the rounds, for a field that they make, and without, for one that steps hand on.
+TEST(Program, AReadingHasTheFieldsOfTheFrame) {
+  for (const std::string& text : {heat_bar(kWave), struck_block("[rule]\nfile = \"texts/glass.toml\"\n")}) {
+    const Scene scene = scene_of_text(text);
+    RoundsRun read(scene, scene.body, {}, 1e-3), shown(scene, scene.body, {}, 1e-3);
+    std::vector<uint32_t> ids(scene.body.size());
+    std::iota(ids.begin(), ids.end(), 0);
+    Asked asked;
+    asked.ids = ids;
+    asked.fields = true;
+    std::vector<double> before;
+    for (int k = 0; k < 3; ++k) {
+      read.advance(7, nullptr), shown.advance(7, nullptr);
+      const std::vector<double> fields = read.read(asked).fields[0];
+      EXPECT_EQ(fields, field_in(shown));
+      EXPECT_NE(fields, before);
+      before = fields;
+    }
+  }
 }
 
 std::string text_refusal(const std::string& text) {

@@ -80,7 +80,7 @@ class EveryEngine : public testing::TestWithParam<Kind> {
     run_ = record(bed.scene, GetParam().make(bed, request), request);
     expect_equal(golden_, run_, tolerance());
   }
-  void go_on(const Bed& bed, uint64_t steps);
+  void go_on(const Bed& bed, uint64_t steps, const std::vector<uint64_t>& energies);
   Recorded golden_, run_;
 };
 
@@ -205,6 +205,56 @@ TEST_P(EveryEngine, OfWarmParticlesInABox) {
   EXPECT_TRUE(run_.trace.frames.empty());
 }
 
+// Energies are dear, probes are not: their values are those of a run that reads both everywhere.
+TEST_P(EveryEngine, ReadsEnergiesLessOftenThanProbes) {
+  const Bed bed = bed_of("scenes/boards/grips.toml");
+  RunRequest request = everything(20);
+  compare(bed, request);
+  const std::vector<Curve> all = run_.trace.curves;
+  const double speed = run_.largest_speed;
+  request.energy_steps = {0, 12, 20};
+  compare(bed, request);
+  const std::vector<Curve>& some = run_.trace.curves;
+  ASSERT_EQ(some.size(), all.size());
+  size_t energies = 0;
+  for (size_t k = 0; k < some.size(); ++k) {
+    EXPECT_EQ(some[k].name, all[k].name);
+    const bool energy = some[k].name.starts_with("energy.") || some[k].name == "temperature";
+    energies += energy ? 1 : 0;
+    if (!energy) {
+      EXPECT_EQ(some[k].step, all[k].step) << some[k].name;
+      EXPECT_EQ(some[k].value, all[k].value) << some[k].name;
+      continue;
+    }
+    EXPECT_EQ(some[k].step, request.energy_steps);
+    // 0, 6, 12, 18, 20
+    EXPECT_EQ(some[k].value, (std::vector{all[k].value[0], all[k].value[2], all[k].value[4]}));
+  }
+  EXPECT_GE(energies, 4u);
+  EXPECT_LT(energies, some.size());
+  EXPECT_EQ(run_.trace.watched, 20u);
+  // The gpu engine looks for it with the energies alone.
+  if (GetParam().name != "gpu") {
+    EXPECT_EQ(run_.largest_speed, speed);
+  }
+}
+
+// Where a run ends early at a step of the probes alone, energies are read there too.
+TEST_P(EveryEngine, ReadsTheEnergiesOfAnEarlyEnd) {
+  Bed bed = bed_of("scenes/boards/grips.toml");
+  const Probe& probe = bed.scene.probes.front();
+  RunRequest request = everything(24);
+  request.energy_steps = {0, 24};
+  request.until = true;
+  const std::string curve = record(bed.scene, GetParam().make(bed, request), request).trace.curves[0].name;
+  bed.scene.until = Until{.curve = curve, .limit = -1e300, .after = 6};
+  compare(bed, request);
+  EXPECT_TRUE(curve.starts_with(probe.name));
+  ASSERT_TRUE(run_.trace.reached);
+  EXPECT_EQ(run_.trace.curves.front().step, (std::vector<uint64_t>{0, 6, 12}));
+  EXPECT_EQ(run_.trace.curves.back().step, (std::vector<uint64_t>{0, 12}));
+}
+
 // An engine whose states are dear has the watch look at some of the probes' steps, and at the last state.
 TEST_P(EveryEngine, IsLookedAtWhereItAllowsAndAtItsEnd) {
   const Bed bed = bed_of("scenes/boards/grips.toml");
@@ -218,12 +268,14 @@ TEST_P(EveryEngine, IsLookedAtWhereItAllowsAndAtItsEnd) {
 
 TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
   for (const auto& [bed, steps] : {std::pair{bed_of("scenes/boards/grips.toml"), 20}, {torn(), 12}})
-    go_on(bed, static_cast<uint64_t>(steps));
+    for (const std::vector<uint64_t>& energies : {{}, std::vector<uint64_t>{0, 12}})
+      go_on(bed, static_cast<uint64_t>(steps), energies);
 }
 
 // Killed, as far as files can tell, between a checkpoint and the next.
-void EveryEngine::go_on(const Bed& bed, uint64_t steps) {
+void EveryEngine::go_on(const Bed& bed, uint64_t steps, const std::vector<uint64_t>& energies) {
   RunRequest request = everything(steps);
+  request.energy_steps = energies;
   const std::string path = fmt::format("{}run_tests.{}.{}", testing::TempDir(), GetParam().name, getpid());
   remove_checkpoint(path);
   request.checkpoint.path = path;

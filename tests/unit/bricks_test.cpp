@@ -13,7 +13,7 @@
 namespace cuboct::test {
 namespace {
 
-Lattice box(const Cell& size, const Cell& period = {}) {
+Lattice box_of_cells(const Cell& size, const Cell& period = {}) {
   std::vector<Cell> cells;
   for (int32_t z = 0; z < size[2]; ++z)
     for (int32_t y = 0; y < size[1]; ++y)
@@ -29,7 +29,7 @@ std::array<uint32_t, kFaces> around(const Bricks& bricks, const Lattice& lattice
 
 // 5 x 4 x 1 cells in bricks of 2 x 3 x 1: three columns, the last one cell wide; two rows, the last one high.
 TEST(Bricks, CutALatticeFromItsLowestCell) {
-  const Lattice lattice = box({5, 4, 1});
+  const Lattice lattice = box_of_cells({5, 4, 1});
   const Bricks bricks(lattice, {2, 3, 1});
   ASSERT_EQ(bricks.size(), 6u);
   EXPECT_EQ(bricks.extent(0), (Cell{2, 3, 1}));
@@ -80,7 +80,7 @@ TEST(Bricks, OfOneCellAreTheLatticesCells) {
 
 // A ring of five in bricks of two closes with a brick of one; a ring in one brick is its own neighbour.
 TEST(Bricks, CloseRings) {
-  const Lattice lattice = box({5, 3, 3}, {5, 3, 0});
+  const Lattice lattice = box_of_cells({5, 3, 3}, {5, 3, 0});
   const Bricks bricks(lattice, {2, 3, 3});
   ASSERT_EQ(bricks.size(), 3u);
   EXPECT_EQ(around(bricks, lattice, 0), (std::array<uint32_t, kFaces>{2, 1, 0, 0, kNoNode, kNoNode}));

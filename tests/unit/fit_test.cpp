@@ -141,7 +141,7 @@ TEST(Fit, SharesOfWhatIsNotThere) {
   EXPECT_FALSE(has_room({0, 0, 1, 0, 0}, room));
 }
 
-Lattice box(const Cell& size, const Cell& period = {}) {
+Lattice box_to_fit(const Cell& size, const Cell& period = {}) {
   std::vector<Cell> cells;
   for (int32_t z = 0; z < size[2]; ++z)
     for (int32_t y = 0; y < size[1]; ++y)
@@ -150,7 +150,7 @@ Lattice box(const Cell& size, const Cell& period = {}) {
 }
 
 TEST(Fit, BricksOfABox) {
-  const Lattice lattice = box({3, 2, 1});
+  const Lattice lattice = box_to_fit({3, 2, 1});
   const std::vector<Cell> bricks = possible_bricks(lattice);
   const std::vector<Cell> all{{1, 1, 1}, {2, 1, 1}, {1, 2, 1}, {3, 1, 1}, {2, 2, 1}, {3, 2, 1}};
   EXPECT_EQ(bricks, all);
@@ -158,7 +158,7 @@ TEST(Fit, BricksOfABox) {
   for (const Cell& b : bricks) counts.push_back(count_bricks(lattice, b));
   EXPECT_EQ(counts, (std::vector<uint32_t>{6, 4, 3, 2, 2, 1}));
   // No brick has more cells than a node serves.
-  for (const Cell& b : possible_bricks(box({20, 10, 10}))) EXPECT_LE(cells_of(b), 512u);
+  for (const Cell& b : possible_bricks(box_to_fit({20, 10, 10}))) EXPECT_LE(cells_of(b), 512u);
 }
 
 // The count that is cheap is that of the bricks themselves, for lattices with holes and rings too.
@@ -169,7 +169,7 @@ TEST(Fit, CountsBricksAsTheyAreCut) {
     std::vector<Cell> cells;
     for (int n = dice.draw(1, 12); n > 0; --n)
       cells.push_back({dice.draw(-3, 4), dice.draw(-2, 3), dice.draw(0, 3)});
-    const Lattice lattice = k % 4 == 0 ? box({6, 4, 3}, {6, 0, 3}) : Lattice(cells, {});
+    const Lattice lattice = k % 4 == 0 ? box_to_fit({6, 4, 3}, {6, 0, 3}) : Lattice(cells, {});
     for (const Cell& brick : possible_bricks(lattice)) {
       if (cells_of(brick) == 1) continue;
       EXPECT_EQ(count_bricks(lattice, brick), Bricks(lattice, brick).size());

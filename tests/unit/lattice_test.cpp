@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "model/base/error.h"
+
 namespace cuboct {
 namespace {
 
@@ -91,6 +93,26 @@ Cell wrapped(Cell c, const Cell& period) {
   for (int a = 0; a < 3; ++a)
     if (period[a] > 0) c[a] = ((c[a] % period[a]) + period[a]) % period[a];
   return c;
+}
+
+// A diagonal takes all cells of the cube around it, whose number is bounded before it is made.
+TEST(Lattice, ADiagonalFillsItsCubeOrIsRefused) {
+  const auto diagonal = [](int length) {
+    std::vector<Cell> cells;
+    for (int k = 0; k < length; ++k) cells.push_back({k, k, k});
+    return cells;
+  };
+  EXPECT_EQ(Lattice(diagonal(30), {}).size(), 27000u);
+  try {
+    Lattice(diagonal(4000), {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "more than 2000000 cells are needed around the 4000 that particles reach: a body that slants "
+        "takes all cells of the box around it\n  hint: turn its length along an axis, or a larger "
+        "pitch");
+  }
 }
 
 // The definition: whenever two diagonal neighbours are in the set, so are the cells on the way by x, y, z.

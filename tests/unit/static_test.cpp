@@ -208,6 +208,7 @@ TEST(Static, IsReadAndSwitchedOffByAStage) {
   const Scene load = parse_scene(stages, "bar.toml", {.begins = true, .stage = "load"});
   ASSERT_TRUE(load.loading);
   EXPECT_EQ(load.probe_every, 10U);
+  EXPECT_EQ(load.energy_every, 10U);
   EXPECT_EQ(load.loading->tolerance, 1e-3);
   const Scene move = parse_scene(stages, "bar.toml", {.begins = true, .stage = "move"});
   EXPECT_FALSE(move.loading);
