@@ -134,6 +134,16 @@ TEST(IntegerBonds, ARunInTwoPartsIsTheRunInOne) {
     second.advance(25, nullptr);
     EXPECT_EQ(second.hash(), whole.hash());
     EXPECT_NE(first.hash(), whole.hash());
+    // As a checkpoint holds it.
+    State slots{35, {}};
+    first.for_each_slot([&](const Particle& particle) { slots.particles.push_back(particle); });
+    const std::vector<uint64_t> memory = first.memory().own;
+    IntegerRun third(made.scene, {made.program, made.fixed, made.lattice, made.origin, made.room},
+                     state_of_checkpoint(slots, made.program, memory));
+    EXPECT_EQ(third.hash(), first.hash());
+    third.advance(25, nullptr);
+    EXPECT_EQ(third.hash(), whole.hash());
+    EXPECT_THROW(state_of_checkpoint(slots, made.program, {memory.begin(), memory.end() - 1}), InputError);
   }
 }
 
