@@ -212,12 +212,34 @@ class Compiler {
     return v;
   }
 
+  // slope(f, a), of a function f by its name.
+  Value slope(const Expression& e) {
+    const auto known = [&] { return e.of.size() == 2 && e.of[0].kind == Expression::Kind::name; };
+    const auto at = known() ? scope_.functions_.find(e.of[0].text) : scope_.functions_.end();
+    if (at == scope_.functions_.end())
+      fail(known() ? e.of[0] : e, "'slope' takes the name of a table's function and its argument",
+           "slope(embedding, total)");
+    return tabled(e.of[1], at->second, true);
+  }
+  Value tabled(const Expression& argument, const TableFunction& f, bool of_slope) {
+    const Value a = number_of(argument);
+    if (scope_.units_ && a.dimension != f.argument && !is_zero(a))
+      fail(argument, fmt::format("{} is needed here, not {}", told(f.argument), told(a.dimension)));
+    return number(f.make(a.node[0], of_slope), of_slope ? combined(f.value, f.argument, -1) : f.value);
+  }
   Value call(const Expression& e) {
+    if (e.text == "slope" && !scope_.functions_.empty()) return slope(e);
+    if (const auto table = scope_.functions_.find(e.text); table != scope_.functions_.end()) {
+      if (e.of.size() != 1)
+        fail(e, fmt::format("'{}' takes 1 argument, not {}", e.text, e.of.size()), e.text + "(a)");
+      return tabled(e.of[0], table->second, false);
+    }
     const auto* const known =
         std::ranges::find_if(kFunctions, [&](const Function& f) { return e.text == f.name; });
     if (known == std::end(kFunctions)) {
       std::vector<std::string> names;
       for (const Function& f : kFunctions) names.emplace_back(f.name);
+      for (const auto& [name, table] : scope_.functions_) names.push_back(name);
       const std::string near = did_you_mean(e.text, names);
       fail(e, fmt::format("unknown function '{}'", e.text), near.empty() ? "known: " + list_of(names) : near);
     }

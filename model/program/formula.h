@@ -28,6 +28,12 @@ struct Value {
   std::array<NodeId, 3> node{};  // one, or x, y, z
 };
 
+// A function of one number that formulas call by its name: f(a), and slope(f, a).
+struct TableFunction {
+  Dimension argument, value;
+  std::function<NodeId(NodeId at, bool of_slope)> make;
+};
+
 // The names that a formula may use. A name's nodes are made when it is first used.
 class Scope {
  public:
@@ -48,6 +54,10 @@ class Scope {
   void define_vector(const std::string& name, RealSource source, uint32_t first, const Dimension& dimension);
   void define_constant(const std::string& name, double value, const Dimension& dimension);
 
+  void define_function(const std::string& name, TableFunction function) {
+    functions_[name] = std::move(function);
+  }
+
   // Throws what the formula's `fail` throws.
   Value value_of(const Formula& formula);
   // The same of a known kind and dimension; `what` completes "... must be": "sum 'force'".
@@ -61,6 +71,7 @@ class Scope {
   RealGraph& graph_;
   bool units_;
   std::map<std::string, std::function<Value()>> names_;
+  std::map<std::string, TableFunction> functions_;
   const std::map<std::string, Formula>* lets_ = nullptr;
   std::map<std::string, Value> made_;
   std::set<std::string> open_;  // lets that are being compiled

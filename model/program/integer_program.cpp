@@ -91,6 +91,7 @@ class Program {
   }
   std::pair<double, double> range_of(const ProgramField& field) const {
     if (field.range) return *field.range;
+    if (const auto range = range_of_tables(field)) return *range;
     if (is_made(field) && field.kind != Value::Kind::truth)
       refuse_rule(fmt::format("integers need the 'range' of the field '{}'", field.name),
                   "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
@@ -99,6 +100,38 @@ class Program {
       for (const double value : start_.particle[field.first + n])
         low = std::min(low, value), high = std::max(high, value);
     return {low, high};
+  }
+  // Of a field that is what a table gives, that of the table.
+  std::optional<std::pair<double, double>> range_of_tables(const ProgramField& field) const {
+    std::optional<std::pair<double, double>> range;
+    for (const ProgramRound& round : rule_.rounds)
+      for (const ProgramWrite& write : round.made) {
+        if (write.number != field.first) continue;
+        const auto of = range_of_table(round.finish, write.node);
+        if (!of) return std::nullopt;
+        range = range ? hull(*range, *of) : *of;
+      }
+    return range;
+  }
+  static std::pair<double, double> hull(std::pair<double, double> a, std::pair<double, double> b) {
+    return {std::min(a.first, b.first), std::max(a.second, b.second)};
+  }
+  static std::optional<std::pair<double, double>> range_of_table(const RealGraph& graph, NodeId id) {
+    const RealNode& node = graph.at(id);
+    if (is_curve(node.op)) return node.table->range(node.op == RealOp::curve_slope);
+    if (node.op != RealOp::select) return std::nullopt;
+    const auto a = range_of_table(graph, node.of[1]), b = range_of_table(graph, node.of[2]);
+    return a && b ? std::optional(hull(*a, *b)) : std::nullopt;
+  }
+  // 2^k of the k-th element of the rule's tables.
+  Scaled element(Builder& b, graph::Source source) {
+    if (rule_.element.empty()) return Scaled::of(1);
+    if (element_ < 0) {
+      element_ = static_cast<int>(out_.program.type_constants.size());
+      std::vector<int64_t> values(rule_.element.begin(), rule_.element.end());
+      out_.program.type_constants.push_back({"element", values, 0});
+    }
+    return {graph::read_constant(b, out_.program, source, element_), 0, 0, 1};
   }
   Scaled read_field(Builder& b, graph::Source source, uint32_t number) const {
     const int field = place_[number];
@@ -291,6 +324,10 @@ class Program {
         return mass(b, graph::Source::own_constant);
       case Source::other_mass:
         return mass(b, graph::Source::other_constant);
+      case Source::own_element:
+        return element(b, graph::Source::own_constant);
+      case Source::other_element:
+        return element(b, graph::Source::other_constant);
       case Source::own_field:
         return read_field(b, graph::Source::own_field, input.index);
       case Source::other_field:
@@ -350,7 +387,7 @@ class Program {
         if (!part) return std::nullopt;
         of[static_cast<size_t>(n)] = *part;
       }
-      return applied(node.op, of[0], of[1], of[2]);
+      return applied(node, of[0], of[1], of[2]);
     };
     for (NodeId n = 0; n <= id; ++n) {
       at_one[n] = value(at_one, graph.at(n), 1);
@@ -425,6 +462,8 @@ class Program {
         return velocity(b, graph::Source::own_v, input.index);
       case Source::own_mass:
         return mass(b, graph::Source::own_constant);
+      case Source::own_element:
+        return element(b, graph::Source::own_constant);
       case Source::own_field:
         return read_field(b, graph::Source::own_field, input.index);
       case Source::position:
@@ -480,7 +519,7 @@ class Program {
   std::vector<int> bond_place_;  // [number of a bond's field]: its field of the program; -1: it never changes
   int lasting_ = -1;             // of the graph of a bond: it counts
   std::vector<int> place_;       // [number of a particle field]: its field of the program; -1: the force
-  int mass_ = -1;                // the type constant
+  int mass_ = -1, element_ = -1;  // the type constants
 };
 
 }  // namespace

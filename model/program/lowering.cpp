@@ -16,6 +16,8 @@ constexpr double kSteepest =
     512;  // a table begins where its function is so many times what it is further out
 constexpr double kFurther = 0.55;  // of the reach
 constexpr double kNearest = 1.0 / 64;
+constexpr int kBeyondBits = 28;  // a value of a table has less
+constexpr int64_t kBeyond = int64_t{1} << (kBeyondBits - 1);
 
 bool is_product(RealOp op) { return op == RealOp::multiply || op == RealOp::divide || op == RealOp::negate; }
 bool is_comparison(RealOp op) { return op == RealOp::below || op == RealOp::at_most; }
@@ -125,6 +127,9 @@ Scaled Lowering::made(NodeId id, double unit) {
       return integers_.inverse(of(0));
     case RealOp::select:
       return integers_.select(of(0), of(1), of(2));
+    case RealOp::curve:
+    case RealOp::curve_slope:
+      return tabled(node, of(0));
     case RealOp::power:
     default:
       return of_one(node, of(0));
@@ -147,7 +152,7 @@ Scaled Lowering::product(NodeId id, double unit) {
   Scaled all = Scaled::of(factors.constant);
   for (const auto& [of, divides] : factors.others) {
     const Scaled x = value(of);
-    all = integers_.multiply(all, divides ? of_one({RealOp::divide, {}, 0, {}}, x) : x);
+    all = integers_.multiply(all, divides ? of_one({RealOp::divide, {}, 0, {}, nullptr}, x) : x);
   }
   // A table takes in what all bonds of one length have alike.
   if (!factors.of_r.empty())
@@ -197,6 +202,20 @@ Scaled Lowering::of_one(const RealNode& node, const Scaled& a) {
   return integers_.function(a, f, std::max(least, std::ldexp(most, -14)), end, 0);
 }
 
+// A table of the rule, of what is no function of r: below 0 as at 0, beyond its end a fault.
+Scaled Lowering::tabled(const RealNode& node, const Scaled& a) {
+  const auto f = [&](double x) { return applied(node, x, 0, 0); };
+  if (a.constant()) return Scaled::of(f(a.number));
+  const double end = node.table->end();
+  const Scaled x = integers_.chosen(true, integers_.chosen(false, a, Scaled::of(0)), Scaled::of(end));
+  Scaled value = integers_.function(x, f, std::ldexp(end, -14), end, 0);
+  const Scaled beyond = integers_.below(Scaled::of(end), a, false);
+  if (node.table->bounded() && !beyond.constant())
+    value.node = b_.check(b_.select(beyond.node, b_.constant(kBeyond), value.node), kBeyondBits, Fault::sum,
+                          radial_ != nullptr ? b_.when() : -1);
+  return value;
+}
+
 // Of a product of what depends on r alone; the axes of a vector share it.
 Scaled Lowering::table(const std::vector<Factor>& factors, double unit) {
   const auto [at, fresh] = tables_.try_emplace({factors, unit});
@@ -236,10 +255,9 @@ Scaled Lowering::fitted(const std::function<double(double)>& f, double unit) {
 }
 
 int Lowering::guarded(int node, double core2) {
-  constexpr int64_t kBeyond = int64_t{1} << 27;
   const int core = integers_.node_in(Scaled::of(core2), r2_.unit, r2_.frac);
   const int near = b_.lt(r2_.node, core);
-  return b_.check(b_.select(near, b_.constant(kBeyond), node), 28, Fault::strength, b_.when());
+  return b_.check(b_.select(near, b_.constant(kBeyond), node), kBeyondBits, Fault::strength, b_.when());
 }
 
 }  // namespace cuboct

@@ -55,6 +55,7 @@ class Lowering {
   Scaled product(NodeId id, double unit);
   Scaled fixed_product(const std::vector<Factor>& factors);
   Scaled of_one(const RealNode& node, const Scaled& a);
+  Scaled tabled(const RealNode& node, const Scaled& a);
   Scaled table(const std::vector<Factor>& factors, double unit);
   Scaled fitted(const std::function<double(double)>& f, double unit);
   int guarded(int node, double core2);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 
@@ -62,7 +63,10 @@ class ProgramTerms final : public RoundsTerms {
         x_(&x0_),
         v_(body.v),
         force_(body.size(), Vec3::Zero()) {
-    for (const uint8_t type : body.type) mass_.push_back(rule.mass_of(type));
+    for (const uint8_t type : body.type) {
+      mass_.push_back(rule.mass_of(type));
+      element_.push_back(program.element.empty() ? 1 : program.element[type]);
+    }
     if (program.declaration.bonds == BondRange::reference)
       bonds_ = reference_bonds(x0_, periodic, program.reach);
     else
@@ -89,6 +93,7 @@ class ProgramTerms final : public RoundsTerms {
         throw std::runtime_error(fmt::format("particle {} has a position that is not finite", i));
     x_ = &x;
     if (near_) near_->update(x);
+    beyond_.reset();
     take_up();
   }
   void pair(size_t round, size_t begin, size_t end, bool keeps) override {
@@ -98,6 +103,7 @@ class ProgramTerms final : public RoundsTerms {
     finish_of(program_.rounds[round], begin, end);
   }
   void end(size_t round, bool keeps) override {
+    if (beyond_) throw std::runtime_error(beyond_->told());
     publish(program_.rounds[round]);
     if (round + 1 < program_.rounds.size()) return;
     if (!program_.still)
@@ -115,6 +121,7 @@ class ProgramTerms final : public RoundsTerms {
       RealBlock block(program_.pair_energy);
       for_rows(0, x0_.size(), [&](const Rows& rows) {
         run(block, rows);
+        check(program_.pair_energy, block, rows.lanes(), [&](size_t k) { return rows.own[k]; });
         const double* pair = block.of(*program_.pair_energy_at);
         for (size_t k = 0; k < rows.lanes(); ++k) sum += pair[k] / 2;
       });
@@ -124,9 +131,11 @@ class ProgramTerms final : public RoundsTerms {
       for (size_t i = 0; i < x0_.size(); i += kFinishRows) {
         const size_t count = std::min(kFinishRows, x0_.size() - i);
         block.run(count, [&](const RealInput& input, double* to) { fill_own(input, i, count, to); });
+        check(program_.particle_energy, block, count, [&](size_t k) { return i + k; });
         for (size_t k = 0; k < count; ++k) sum += block.of(*program_.particle_energy_at)[k];
       }
     }
+    if (beyond_) throw std::runtime_error(beyond_->told());
     return sum;
   }
   // Half of the virial of the force's terms: the other half is of the other particle.
@@ -202,6 +211,17 @@ class ProgramTerms final : public RoundsTerms {
   }
 
  private:
+  // What is asked of a table beyond its end: of the first particle of those that do, whoever finds it.
+  struct Beyond {
+    size_t particle;
+    const CubicTable* table;
+    double at;
+    std::string told() const {
+      return fmt::format("particle {}: the {} is asked for at {:.6g}, and its table ends at {:.6g}", particle,
+                         table->what(), at, table->end());
+    }
+  };
+
   // What the last step left becomes what the rounds work on, and back.
   void take_up() {
     for (const ProgramField& field : program_.particle)
@@ -283,6 +303,9 @@ class ProgramTerms final : public RoundsTerms {
         return work_[input.index][i];
       case Source::position:
         return (*x_)[i][input.index];
+      case Source::own_element:
+      case Source::other_element:
+        return element_[i];
       default:
         return dt_;
     }
@@ -311,6 +334,7 @@ class ProgramTerms final : public RoundsTerms {
         case Source::other_velocity:
         case Source::other_mass:
         case Source::other_field:
+        case Source::other_element:
           fill_at(input, rows.other, to);
           break;
         default:
@@ -332,6 +356,7 @@ class ProgramTerms final : public RoundsTerms {
     RealBlock block(round.pair);
     for_rows(begin, end, [&](const Rows& rows) {
       run(block, rows, makes);
+      check(round.pair, block, rows.lanes(), [&](size_t k) { return rows.own[k]; });
       for (const ProgramWrite& write : round.bonds)
         std::copy_n(block.of(write.node), rows.lanes(),
                     bond_[write.number].begin() + static_cast<ptrdiff_t>(rows.bond));
@@ -358,8 +383,24 @@ class ProgramTerms final : public RoundsTerms {
         else
           fill_own(input, first, count, to);
       });
+      check(round.finish, block, count, [&](size_t k) { return first + k; });
       for (const ProgramWrite& write : round.made)
         std::copy_n(block.of(write.node), count, next_[write.number].begin() + static_cast<ptrdiff_t>(first));
+    }
+  }
+  template <class ParticleOf>
+  void check(const RealGraph& graph, const RealBlock& block, size_t count,
+             const ParticleOf& particle_of) const {
+    if (!program_.potential) return;
+    for (const RealNode& node : graph.nodes()) {
+      if (!is_curve(node.op) || !node.table->bounded()) continue;
+      const double* at = block.of(node.of[0]);
+      for (size_t k = 0; k < count; ++k)
+        if (node.table->beyond(at[k])) {
+          const std::lock_guard lock(found_);
+          const size_t particle = particle_of(k);
+          if (!beyond_ || particle < beyond_->particle) beyond_ = {particle, node.table, at[k]};
+        }
     }
   }
   void publish(const ProgramRound& round) {
@@ -401,9 +442,11 @@ class ProgramTerms final : public RoundsTerms {
   std::vector<Vec3> x0_;
   const std::vector<Vec3>* x_;
   std::vector<Vec3> v_, force_;
-  std::vector<double> mass_;
+  std::vector<double> mass_, element_;
   ReferenceBonds bonds_{{0}, {}, {}};
   std::optional<NearRows> near_;
+  mutable std::mutex found_;
+  mutable std::optional<Beyond> beyond_;
   // [number][particle] and [number][bond]: what the rounds work on, what a finish makes of it, and what the
   // last step left. A row's sums are read by its own finish alone, so all rounds share them.
   std::vector<std::vector<double>> work_, next_, kept_, sums_, bond_, bond_kept_;

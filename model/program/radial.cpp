@@ -36,7 +36,7 @@ void Radial::fix() {
       for (size_t k = 0; k < parts; ++k)
         of[k] = fixed_[node.of[k]] != 0 ? fixed_at(node.of[k], c) : graph_.at(node.of[k]).value;
       values_[c].push_back(node.op == RealOp::input ? classes_->at(c, node.input)
-                                                    : applied(node.op, of[0], of[1], of[2]));
+                                                    : applied(node, of[0], of[1], of[2]));
     }
     of_length_[id] = 1;
     for (size_t c = 0; c < values_.size(); ++c)
@@ -55,7 +55,7 @@ double Radial::at(NodeId id, double r2, size_t length) const {
     else if (of_length_[k] != 0)
       values[k] = fixed_at(k, classes_->of_length(length));
     else if (of_r_[k] != 0)
-      values[k] = applied(node.op, values[node.of[0]], values[node.of[1]], values[node.of[2]]);
+      values[k] = applied(node, values[node.of[0]], values[node.of[1]], values[node.of[2]]);
   }
   return values[id];
 }

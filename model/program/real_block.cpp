@@ -37,6 +37,11 @@ void RealBlock::reserve(size_t count) {
 void RealBlock::apply(NodeId id, size_t count) {
   const RealNode& node = graph_.at(id);
   double* to = lanes_of(id);
+  if (is_curve(node.op)) {
+    const double* argument = of(node.of[0]);
+    for (size_t k = 0; k < count; ++k) to[k] = applied(node, argument[k], 0, 0);
+    return;
+  }
   kLoops[static_cast<size_t>(node.op)](count, to, of(node.of[0]), of(node.of[1]), of(node.of[2]));
 }
 

@@ -25,6 +25,8 @@ int arity(RealOp op) {
     case RealOp::cosine:
     case RealOp::absolute:
     case RealOp::inverse:
+    case RealOp::curve:
+    case RealOp::curve_slope:
       return 1;
     case RealOp::select:
       return 3;
@@ -35,16 +37,16 @@ int arity(RealOp op) {
 
 NodeId RealGraph::keep(const RealNode& node) {
   const auto [at, fresh] =
-      known_.try_emplace({node.op, node.of, std::bit_cast<uint64_t>(node.value), node.input},
+      known_.try_emplace({node.op, node.of, std::bit_cast<uint64_t>(node.value), node.input, node.table},
                          static_cast<NodeId>(nodes_.size()));
   if (fresh) nodes_.push_back(node);
   return at->second;
 }
 
-NodeId RealGraph::constant(double value) { return keep({RealOp::constant, {}, value, {}}); }
+NodeId RealGraph::constant(double value) { return keep({RealOp::constant, {}, value, {}, nullptr}); }
 
 NodeId RealGraph::input(RealSource source, uint32_t index) {
-  return keep({RealOp::input, {}, 0, {source, index}});
+  return keep({RealOp::input, {}, 0, {source, index}, nullptr});
 }
 
 NodeId RealGraph::add(RealOp op, NodeId a, NodeId b, NodeId c) {
@@ -61,7 +63,13 @@ NodeId RealGraph::add(RealOp op, NodeId a, NodeId b, NodeId c) {
     if (std::abs(value(1)) <= kMostFactors && value(1) == std::round(value(1)) && value(1) != 0)
       return whole_power(a, static_cast<int>(value(1)));
   }
-  return keep({op, of, 0, {}});
+  return keep({op, of, 0, {}, nullptr});
+}
+
+NodeId RealGraph::curve(const CubicTable& table, NodeId a, bool of_slope) {
+  const RealNode node{of_slope ? RealOp::curve_slope : RealOp::curve, {a, 0, 0}, 0, {}, &table};
+  const RealNode& of = nodes_[a];
+  return of.op == RealOp::constant ? constant(applied(node, of.value, 0, 0)) : keep(node);
 }
 
 NodeId RealGraph::whole_power(NodeId a, int exponent) {

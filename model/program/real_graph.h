@@ -12,6 +12,8 @@
 #include <tuple>
 #include <vector>
 
+#include "model/program/cubic_table.h"
+
 namespace cuboct {
 
 enum class RealOp : uint8_t {
@@ -38,6 +40,8 @@ enum class RealOp : uint8_t {
   either,
   inverse,  // not
   select,   // a != 0 ? b : c
+  curve,    // of a table: its value, its slope
+  curve_slope,
 };
 
 // Where an input comes from. `own` is the particle that sums, `other` the one at the bond's far end.
@@ -50,11 +54,13 @@ enum class RealSource : uint8_t {
   other_mass,
   own_field,  // index: a number of the fields, one after another
   other_field,
-  bond_field,  // index: a field of bonds
-  position,    // own, m, by axis
-  sum,         // index: a number of the round's sums, one after another
-  time_step,   // s
-  made,        // 1 where a step is made, 0 where the state is only looked at
+  bond_field,   // index: a field of bonds
+  position,     // own, m, by axis
+  sum,          // index: a number of the round's sums, one after another
+  time_step,    // s
+  own_element,  // 2^k of the k-th element of the rule's potential
+  other_element,
+  made,  // 1 where a step is made, 0 where the state is only looked at
 };
 
 struct RealInput {
@@ -69,8 +75,9 @@ using NodeId = uint32_t;
 struct RealNode {
   RealOp op = RealOp::constant;
   std::array<NodeId, 3> of{};
-  double value = 0;   // of a constant
-  RealInput input{};  // of an input
+  double value = 0;                   // of a constant
+  RealInput input{};                  // of an input
+  const CubicTable* table = nullptr;  // of a curve
 };
 
 // How many nodes an operation takes.
@@ -121,9 +128,17 @@ inline double applied(RealOp op, double a, double b, double c) {
       return a != 0 ? b : c;
     case RealOp::constant:
     case RealOp::input:
+    case RealOp::curve:
+    case RealOp::curve_slope:
       break;
   }
   return 0;
+}
+inline bool is_curve(RealOp op) { return op == RealOp::curve || op == RealOp::curve_slope; }
+inline double applied(const RealNode& node, double a, double b, double c) {
+  if (node.op == RealOp::curve) return node.table->at(a);
+  if (node.op == RealOp::curve_slope) return node.table->slope(a);
+  return applied(node.op, a, b, c);
 }
 
 class RealGraph {
@@ -132,6 +147,8 @@ class RealGraph {
   NodeId constant(double value);
   NodeId input(RealSource source, uint32_t index = 0);
   NodeId add(RealOp op, NodeId a, NodeId b = 0, NodeId c = 0);
+  // The table, or its slope, at a. It must outlive the graph.
+  NodeId curve(const CubicTable& table, NodeId a, bool of_slope);
 
   const std::vector<RealNode>& nodes() const { return nodes_; }
   const RealNode& at(NodeId id) const { return nodes_[id]; }
@@ -143,7 +160,7 @@ class RealGraph {
   NodeId whole_power(NodeId a, int exponent);
 
   std::vector<RealNode> nodes_;
-  std::map<std::tuple<RealOp, std::array<NodeId, 3>, uint64_t, RealInput>, NodeId> known_;
+  std::map<std::tuple<RealOp, std::array<NodeId, 3>, uint64_t, RealInput, const CubicTable*>, NodeId> known_;
 };
 
 }  // namespace cuboct

@@ -27,6 +27,7 @@ class Understanding {
 
   RuleProgram program() {
     program_.still = text_.still;
+    program_.potential = text_.potential;
     name_fields();
     constants();
     starts();
@@ -75,6 +76,74 @@ class Understanding {
     }
     if (program_.reach > 0) scope.define_constant("reach", program_.reach, quantity::length.dimension);
     scope.define_lets(text_.lets);
+    if (text_.potential) define_potential(scope);
+  }
+  // Where there is one element, its functions mean the same everywhere.
+  void define_potential(Scope& scope) const {
+    const EmbeddedAtoms& potential = *text_.potential;
+    scope.define_constant("cutoff", potential.cutoff, quantity::length.dimension);
+    if (potential.lattice_constant > 0)
+      scope.define_constant("lattice_constant", potential.lattice_constant, quantity::length.dimension);
+    if (potential.elements.size() > 1) return;
+    for (const char* suffix : {"", "_i", "_j"}) define_element(scope, suffix, Source::own_element);
+    define_between(scope);
+  }
+  // Functions of the element of the particle that `element` tells.
+  void define_element(Scope& scope, const std::string& suffix, Source element) const {
+    const EmbeddedAtoms& potential = *text_.potential;
+    const auto of = [&scope, element](const std::vector<EmbeddedAtoms::Table>& tables) {
+      return [&scope, element, &tables](NodeId at, bool of_slope) {
+        return chosen(scope.graph(), tables, element, at, of_slope);
+      };
+    };
+    scope.define_function("density" + suffix, {quantity::length.dimension, {}, of(potential.density)});
+    scope.define_function("embedding" + suffix, {{}, kEnergy, of(potential.embedding)});
+  }
+  static NodeId chosen(RealGraph& graph, const std::vector<EmbeddedAtoms::Table>& tables, Source element,
+                       NodeId at, bool of_slope) {
+    NodeId value = graph.curve(*tables.back(), at, of_slope);
+    for (size_t k = tables.size() - 1; k-- > 0;) {
+      const NodeId is = graph.add(RealOp::equal, graph.input(element),
+                                  graph.constant(std::ldexp(1.0, static_cast<int>(k))));
+      value = graph.add(RealOp::select, is, graph.curve(*tables[k], at, of_slope), value);
+    }
+    return value;
+  }
+  // Both particles' codes add up to a number that no other two elements have, and that is the same from both
+  // ends.
+  void define_between(Scope& scope) const {
+    scope.define_function("pair", {quantity::length.dimension, kEnergy, [this, &scope](NodeId r, bool slope) {
+                                     return between(scope.graph(), r, slope);
+                                   }});
+  }
+  NodeId between(RealGraph& graph, NodeId r, bool of_slope) const {
+    const EmbeddedAtoms& potential = *text_.potential;
+    const size_t count = potential.elements.size();
+    NodeId value = pair_of(graph, *potential.pair.back(), r, of_slope);
+    if (count == 1) return value;
+    const NodeId both =
+        graph.add(RealOp::add, graph.input(Source::own_element), graph.input(Source::other_element));
+    for (size_t i = 0; i + 1 < count; ++i)
+      for (size_t j = i; j < count; ++j) {
+        const double code = std::ldexp(1.0, static_cast<int>(i)) + std::ldexp(1.0, static_cast<int>(j));
+        const NodeId here = pair_of(graph, *potential.pair[i * count + j], r, of_slope);
+        value = graph.add(RealOp::select, graph.add(RealOp::equal, both, graph.constant(code)), here, value);
+      }
+    return value;
+  }
+  // The file has r times the energy of a pair.
+  static NodeId pair_of(RealGraph& graph, const CubicTable& table, NodeId r, bool of_slope) {
+    const NodeId energy = graph.add(RealOp::divide, graph.curve(table, r, false), r);
+    if (!of_slope) return energy;
+    const NodeId rise = graph.add(RealOp::subtract, graph.curve(table, r, true), energy);
+    return graph.add(RealOp::divide, rise, r);
+  }
+  void check_reach() const {
+    if (text_.potential && program_.reach > text_.potential->cutoff * (1 + 1e-9))
+      text_.reach->fail({0,
+                         fmt::format("'reach' is {:.6g}, beyond the cutoff of the potential's tables, {:.6g}",
+                                     program_.reach, text_.potential->cutoff),
+                         "reach = \"cutoff\""});
   }
   double constant(const std::optional<Formula>& formula, const std::string& what,
                   const Dimension& dimension) {
@@ -90,6 +159,7 @@ class Understanding {
   }
   void constants() {
     program_.reach = constant(text_.reach, "'reach'", quantity::length.dimension);
+    check_reach();
     program_.stiffness = constant(text_.stiffness, "'stiffness'", quantity::stiffness.dimension);
   }
 
@@ -129,7 +199,12 @@ class Understanding {
     scope.define_number("mass_i", Source::own_mass, 0, mass);
     scope.define_number("mass_j", Source::other_mass, 0, mass);
     scope.define_number("dt", Source::time_step, 0, quantity::time.dimension);
+    if (!alloy()) return;
+    define_element(scope, "_i", Source::own_element);
+    define_element(scope, "_j", Source::other_element);
+    define_between(scope);
   }
+  bool alloy() const { return text_.potential && text_.potential->elements.size() > 1; }
   void define_bonds(Scope& scope, size_t before) const {
     for (size_t k = 0; k < before; ++k)
       define_field(scope, program_.bond[k].name, Source::bond_field, program_.bond[k],
@@ -149,6 +224,7 @@ class Understanding {
     scope.define_number("mass", Source::own_mass, 0, quantity::mass.dimension);
     scope.define_number("dt", Source::time_step, 0, quantity::time.dimension);
     define_particle(scope, Source::own_field, "", text_.particle.size());
+    if (alloy()) define_element(scope, "", Source::own_element);
   }
 
   void starts() {
@@ -364,6 +440,8 @@ class Understanding {
     for (const auto& [name, p] : text_.parameters) program_.settings.push_back({name, p.text, "parameter"});
     program_.settings.push_back(
         {"text", fmt::format("{:016x}", hash_of(text_)), "hash of the rule's formulas"});
+    if (text_.potential)
+      program_.settings.push_back({"potential", text_.potential->told, "tables of a file"});
   }
 
   const RuleText& text_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,6 +57,9 @@ struct RuleProgram {
   RealGraph pair_energy, particle_energy, broken;
   std::optional<NodeId> pair_energy_at, particle_energy_at, broken_at;
   std::vector<DeclarationLine> settings;
+  std::shared_ptr<const EmbeddedAtoms> potential;  // whose tables the graphs refer to; may be null
+  // By type of particles 2^k of the k-th element of the potential; empty: all are the first.
+  std::vector<double> element;
 };
 
 // What the scene gives a rule.

@@ -54,6 +54,7 @@ uint64_t hash_of(const RuleText& text) {
   hash.add(text.bond);
   hash.add(text.setup);
   hash.add(text.rounds);
+  if (text.potential) hash.add(std::bit_cast<double>(text.potential->hash));
   return hash.value();
 }
 

@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "model/program/formula.h"
+#include "model/program/potential_file.h"
 #include "model/rules/declaration.h"
 
 namespace cuboct {
@@ -59,6 +61,7 @@ struct RuleText {
   std::vector<Field> particle, bond;
   std::map<std::string, Formula> lets;
   std::vector<Round> setup, rounds;
+  std::shared_ptr<const EmbeddedAtoms> potential;  // null: the rule has none
 };
 
 // Of what the rule does: of names, numbers and formulas, not of comments.

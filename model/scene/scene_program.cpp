@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/program/program_rule.h"
 #include "model/scene/file_kind.h"
 #include "model/scene/scene_parts.h"
@@ -193,6 +196,63 @@ RuleText rule_text(const ConfigTable& table) {
   return text;
 }
 
+// The file of a rule's tables, and which of its elements particles are. The scene's own keys take the place
+// of the rule's.
+struct PotentialKeys {
+  std::optional<ConfigTable> table;  // where they stand
+  std::optional<ConfigValue> file, element;
+  std::vector<std::pair<std::string, std::string>> elements;  // by material
+
+  void read(const ConfigTable& rule) {
+    const auto keys = rule.table_at("potential");
+    if (!keys) return;
+    keys->record_as("potential");
+    table = keys;
+    if (const auto own = keys->find("file")) file = own;
+    keys->not_both("element", "elements");
+    if (const auto own = keys->find("element")) element = own, elements.clear();
+    if (const auto own = names_at(*keys, "elements")) {
+      element.reset(), elements.clear();
+      for (const std::string& name : own->names()) elements.emplace_back(name, own->at(name).string());
+    }
+  }
+  std::vector<std::string> wanted() const {
+    if (element) return {element->string()};
+    std::vector<std::string> all;
+    for (const auto& [material, name] : elements)
+      if (std::ranges::count(all, name) == 0) all.push_back(name);
+    return all;
+  }
+  std::shared_ptr<const EmbeddedAtoms> tables() const {
+    if (!table) return nullptr;
+    if (!file)
+      table->fail("a potential needs its 'file'", "of the scene: [rule] potential.file = \"Cu.eam\"");
+    const std::string path = file->file();
+    try {
+      return std::make_shared<const EmbeddedAtoms>(read_embedded_atoms(path, wanted(), !table->reduced()));
+    } catch (const InputError& error) {
+      if (error.keys() != std::vector<std::string>{"element"}) throw;
+      const ErrorParts parts = parts_of(error);
+      (element ? *element : *file).fail(parts.message, parts.hint);
+    }
+  }
+  // By type of particles: 2^k of the k-th element.
+  std::vector<double> codes(const Scene& scene) const {
+    std::vector<double> all;
+    if (elements.empty()) return all;
+    const std::vector<std::string> names = wanted();
+    for (const ParticleType& type : scene.rule.types) {
+      const std::string material = type.name.substr(0, type.name.find('/'));
+      const auto at = std::ranges::find(elements, material, &std::pair<std::string, std::string>::first);
+      if (at == elements.end())
+        table->fail(fmt::format("'elements' does not say which one the material '{}' is", material));
+      const auto k = std::ranges::find(names, at->second) - names.begin();
+      all.push_back(std::ldexp(1.0, static_cast<int>(k)));
+    }
+    return all;
+  }
+};
+
 // The scene's own values of the file's parameters.
 void set_parameters(const ConfigTable& rule, RuleText& text) {
   const auto own = names_at(rule, "parameters");
@@ -225,7 +285,7 @@ void set_starts(const ConfigTable& rule, RuleText& text) {
   }
 }
 
-RuleText text_of_file(const ConfigValue& file) {
+RuleText text_of_file(const ConfigValue& file, PotentialKeys& potential) {
   const std::string path = file.file(), text = read_config_text(path);
   return read_kind(FileKind::rule, text, path, [&](const ConfigTable& root) {
     if (root.reduced() != file.reduced())
@@ -233,35 +293,47 @@ RuleText text_of_file(const ConfigValue& file) {
                             root.reduced() ? "reduced" : "SI"));
     root.record_as("rule");
     RuleText rule = rule_text(root);
+    potential.read(root);
     root.done();
     return rule;
   });
 }
 
-RuleChoice chosen(const RuleText& text, const PackingChoice* packing) {
-  const auto rule = std::make_shared<const ProgramRule>(
-      understood(text, {.pitch = packing != nullptr ? packing->fcc.pitch : 0}));
-  return {rule->reach(), [rule](const ConfigTable& root, const Regions&, const Scene& scene) {
+RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const PackingChoice* packing) {
+  const RuleProgram program = understood(text, {.pitch = packing != nullptr ? packing->fcc.pitch : 0});
+  return {program.reach, [program, potential](const ConfigTable& root, const Regions&, const Scene& scene) {
             check_rounds_body(root, scene);
-            return rule;
+            RuleProgram whole = program;
+            whole.element = potential.codes(scene);
+            return std::make_shared<const ProgramRule>(std::move(whole));
           }};
 }
 
 }  // namespace
 
 RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing) {
-  if (!rule.is_table()) return chosen(text_of_file(rule), packing);
+  PotentialKeys potential;
+  const auto with_tables = [&](RuleText text) {
+    text.potential = potential.tables();
+    return chosen(text, potential, packing);
+  };
+  if (!rule.is_table()) {
+    RuleText text = text_of_file(rule, potential);
+    return with_tables(std::move(text));
+  }
   const ConfigTable table = rule.table();
   if (const auto file = table.find("file")) {
-    RuleText text = text_of_file(*file);
+    RuleText text = text_of_file(*file, potential);
+    potential.read(table);
     set_parameters(table, text);
     set_starts(table, text);
     table.done();
-    return chosen(text, packing);
+    return with_tables(std::move(text));
   }
-  const RuleText text = rule_text(table);
+  RuleText text = rule_text(table);
+  potential.read(table);
   table.done();
-  return chosen(text, packing);
+  return with_tables(std::move(text));
 }
 
 }  // namespace cuboct
