@@ -6,7 +6,7 @@
 namespace cuboct {
 
 CubicTable::CubicTable(std::string what, double step, const std::vector<double>& f, bool bounded)
-    : what_(std::move(what)), step_(step), bounded_(bounded) {
+    : what_(std::move(what)), step_(step), per_step_(1 / step), bounded_(bounded) {
   const size_t n = f.size();
   std::vector<double> slope(n);  // a step
   slope[0] = f[1] - f[0];

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace cuboct {
@@ -26,7 +27,7 @@ class CubicTable {
   }
   double slope(double x) const {
     const auto [c, p] = place(x);
-    return ((3 * c[3] * p + 2 * c[2]) * p + c[1]) / step_;
+    return ((3 * c[3] * p + 2 * c[2]) * p + c[1]) * per_step_;
   }
   double end() const { return step_ * static_cast<double>(bins()); }
   double step() const { return step_; }
@@ -44,7 +45,7 @@ class CubicTable {
   };
   size_t bins() const { return cubics_.size() / 4; }
   Place place(double x) const {
-    const double steps = x / step_;
+    const double steps = x * per_step_;
     // Not a number: the last.
     const size_t bin =
         steps < static_cast<double>(bins() - 1) ? static_cast<size_t>(std::max(steps, 0.0)) : bins() - 1;
@@ -52,7 +53,7 @@ class CubicTable {
   }
 
   std::string what_;
-  double step_;
+  double step_, per_step_;
   bool bounded_;
   std::vector<double> cubics_;  // [bin][power]
 };

@@ -11,7 +11,8 @@
 namespace cuboct {
 namespace {
 
-constexpr int kBinBits = 6;  // 64 parabolas an octave: for x^-n off by n^3/2^25 of a value at most
+constexpr int kBinBits = 6;     // 64 parabolas an octave: for x^-n off by n^3/2^25 of a value at most
+constexpr double kGood = 1e-6;  // of the largest value: a larger error takes bins of half the width
 constexpr int kMostIndex = 11;
 constexpr int kCoefficient = 25;
 constexpr int kFraction = 17;
@@ -46,37 +47,35 @@ int octave_of(double argument) {
   return argument < 1 ? 0 : static_cast<int>(std::floor(std::log2(argument)));
 }
 
-}  // namespace
-
-FittedTable fit_table(const TableRoom& room, const std::function<double(double)>& f) {
+FittedTable fitted_with(int bin_bits, const TableRoom& room, const std::function<double(double)>& f) {
   FittedTable out;
   FixedTable& table = out.table;
   table.shape = TableShape::octaves;
   table.degree = 2;
-  table.difference_frac = std::max((room.bits + 1) / 2, (kBinBits + 1) / 2 + 1);
-  table.bin_bits = kBinBits;
+  table.difference_frac = std::max((room.bits + 1) / 2, (bin_bits + 1) / 2 + 1);
+  table.bin_bits = bin_bits;
   table.fraction_bits = kFraction;
-  const int octaves = 2 * table.difference_frac, most = 1 << (kMostIndex - kBinBits);
+  const int octaves = 2 * table.difference_frac, most = 1 << (kMostIndex - bin_bits);
   table.first_octave = std::clamp(octave_of(room.from / room.step), std::max(0, octaves - most), octaves - 1);
   table.index_bits =
-      kBinBits + static_cast<int>(std::bit_width(static_cast<unsigned>(octaves - table.first_octave - 1)));
+      bin_bits + static_cast<int>(std::bit_width(static_cast<unsigned>(octaves - table.first_octave - 1)));
 
   const auto at = [&](double argument) { return f(std::min(argument * room.step, room.to)) / room.unit; };
   std::vector<Parabola> bins;
   const size_t entries = size_t{1} << table.index_bits;
   for (size_t k = 0; k < entries; ++k) {
-    const int octave = table.first_octave + static_cast<int>(k >> kBinBits);
-    const double width = std::ldexp(1.0, octave - kBinBits);
-    const double begin = std::ldexp(1.0, octave) + width * static_cast<double>(k % (1u << kBinBits));
+    const int octave = table.first_octave + static_cast<int>(k >> bin_bits);
+    const double width = std::ldexp(1.0, octave - bin_bits);
+    const double begin = std::ldexp(1.0, octave) + width * static_cast<double>(k % (1u << bin_bits));
     const double y0 = at(begin), ym = at(begin + width / 2), y1 = at(begin + width);
     bins.push_back(through(y0, ym, y1));
   }
   keep(bins, table);
   const uint64_t last = static_cast<uint64_t>(std::min(room.to / room.step, std::ldexp(1.0, octaves) - 1));
   for (size_t k = 0; k < 4 * entries; ++k) {
-    const int octave = table.first_octave + static_cast<int>(k >> (kBinBits + 2));
+    const int octave = table.first_octave + static_cast<int>(k >> (bin_bits + 2));
     const auto argument = static_cast<uint64_t>(
-        std::ldexp(1.0 + (static_cast<double>(k % (4u << kBinBits)) + 0.5) / (4 << kBinBits), octave));
+        std::ldexp(1.0 + (static_cast<double>(k % (4u << bin_bits)) + 0.5) / (4 << bin_bits), octave));
     if (argument > last) break;
     if (static_cast<double>(argument) < kFar * static_cast<double>(last)) continue;
     const double value = std::ldexp(static_cast<double>(table.at(argument)), -table.value_frac);
@@ -84,6 +83,16 @@ FittedTable fit_table(const TableRoom& room, const std::function<double(double)>
     out.largest = std::max(out.largest, std::abs(value));
   }
   return out;
+}
+
+}  // namespace
+
+FittedTable fit_table(const TableRoom& room, const std::function<double(double)>& f) {
+  FittedTable best = fitted_with(kBinBits, room, f);
+  const int octaves = best.table.index_bits - kBinBits;  // as a power of two
+  for (int bits = kBinBits + 1; bits + octaves <= kMostIndex && best.worst > kGood * best.largest; ++bits)
+    best = fitted_with(bits, room, f);
+  return best;
 }
 
 FittedTable fit_window(const WindowRoom& room, const std::function<double(double, size_t)>& f) {

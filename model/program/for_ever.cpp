@@ -35,7 +35,7 @@ std::vector<Known> known(const RealGraph& graph, const Truths& truths) {
       bool all = true;
       for (size_t k = 0; k < static_cast<size_t>(arity(node.op)); ++k) all = all && of(k);
       const auto part = [&](size_t k) { return of(k).value_or(0); };
-      if (all) value = applied(node.op, part(0), part(1), part(2));
+      if (all) value = applied(node, part(0), part(1), part(2));
     }
     values.push_back(value);
   }

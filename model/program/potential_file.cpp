@@ -219,13 +219,13 @@ Functions functions_of(PotentialText& file) {
   check_units(file, file.line());
   const FileWord second_at = file.here();
   const std::vector<FileWord> second = file.line();
-  const FileWord third_at = file.here();
   const auto numbers = [](const std::vector<FileWord>& words, size_t count) {
     return words.size() >= count &&
            std::all_of(words.begin(), words.begin() + static_cast<ptrdiff_t>(count), is_number);
   };
   PotentialText after = file;
-  if (numbers(second, 3) && numbers(file.line(), 5))
+  const std::vector<FileWord> third = file.line();
+  if (numbers(second, 3) && numbers(third, 5))
     return funcfl(after, header_of(after, second, second_at, "of the file"));
   const FileWord at = file.here();
   const std::vector<FileWord> names = file.line();
@@ -233,8 +233,7 @@ Functions functions_of(PotentialText& file) {
       "a setfl file: three lines of comments, then the number of elements and their names; a funcfl file: a "
       "comment, then atomic number, mass and lattice constant, then Nrho drho Nr dr cutoff";
   if (names.empty() || !is_number(names[0]))
-    file.fail(names.empty() ? (second.empty() ? third_at : at) : names[0],
-              "neither a setfl file nor a funcfl file", kHint);
+    file.fail(names.empty() ? at : names[0], "neither a setfl file nor a funcfl file", kHint);
   const size_t count = file.count(names[0], "the number of elements", 1, kMostElements);
   if (names.size() != count + 1)
     file.fail(names[0], fmt::format("{} elements, but {} names", count, names.size() - 1), kHint);
