@@ -236,6 +236,12 @@ struct PotentialKeys {
       (element ? *element : *file).fail(parts.message, parts.hint);
     }
   }
+  std::string told() const {
+    std::string text;
+    for (const auto& [material, name] : elements)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", material, name);
+    return text;
+  }
   // By type of particles: 2^k of the k-th element.
   std::vector<double> codes(const Scene& scene) const {
     std::vector<double> all;
@@ -305,6 +311,8 @@ RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const Pa
             check_rounds_body(root, scene);
             RuleProgram whole = program;
             whole.element = potential.codes(scene);
+            if (!whole.element.empty())
+              whole.settings.push_back({"elements", potential.told(), "by material"});
             return std::make_shared<const ProgramRule>(std::move(whole));
           }};
 }

@@ -53,7 +53,7 @@ TEST_P(TextEngines, LatticeHasGoldensBitsAndGoesOnFromItsCheckpoint) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, TextEngines,
                          testing::Values(TextCase{"heat.toml", 40}, TextCase{"glass.toml", 60},
-                                         TextCase{"plastic.toml", 60}),
+                                         TextCase{"plastic.toml", 60}, TextCase{"copper.toml", 20}),
                          [](const auto& p) { return p.param.scene.substr(0, p.param.scene.find('.')); });
 
 }  // namespace

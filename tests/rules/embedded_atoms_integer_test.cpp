@@ -19,19 +19,19 @@ const std::string kHotBlock =
     "run = { dt = \"2 fs\", steps = 10 }\n"
     "rule = { file = \"texts/eam.toml\", potential.file = \"texts/copper.eam.alloy\" }\n";
 
-std::vector<Vec3> places(Engine& run) { return std::get<RealFrame>(run.frame(false)).x; }
+std::vector<Vec3> atom_places(Engine& run) { return std::get<RealFrame>(run.frame(false)).x; }
 
 TEST(EmbeddedAtomsInIntegers, MoveAsInDoublesAndKeepMomentumAndEnergy) {
-  const test::InIntegers made(kHotBlock, 64);
+  const InIntegers made(kHotBlock, 64);
   IntegerRun golden = made.run();
   RoundsRun doubles(made.scene, made.scene.body, {}, made.fixed.cell_edge);
   const Momentum before = golden.momentum();
-  const std::vector<Vec3> first = places(golden);
+  const std::vector<Vec3> first = atom_places(golden);
   Asked asked;
   asked.energies = true;
   const auto energy = [&](Engine& run) { return run.read(asked).energies.total() / test::kEv; };
   golden.advance(50, nullptr), doubles.advance(50, nullptr);
-  const std::vector<Vec3> here = places(golden), there = places(doubles);
+  const std::vector<Vec3> here = atom_places(golden), there = atom_places(doubles);
   double moved = 0, off = 0;
   for (size_t i = 0; i < here.size(); ++i) {
     moved = std::max(moved, (here[i] - first[i]).norm() / test::kAngstrom);
@@ -53,7 +53,7 @@ TEST(EmbeddedAtomsInIntegers, MoveAsInDoublesAndKeepMomentumAndEnergy) {
 }
 
 TEST(EmbeddedAtomsInIntegers, FormatsAreProvenAndTheForceIsOdd) {
-  const test::InIntegers made(kHotBlock, 64);
+  const InIntegers made(kHotBlock, 64);
   const graph::FixedProgram& program = made.program.program;
   EXPECT_EQ(graph::refusal_of(graph::certificate_of(program)).what, "");
   const graph::Round& pull = program.rounds.back();
@@ -77,7 +77,7 @@ TEST(EmbeddedAtomsInIntegers, ADensityBeyondTheTableIsAFault) {
       text.find("{ temperature = \"900 K\", seed = 3 }"), 35,
       "{ region = { shape = \"half_space\", point = \"[0, 4.1, 0] angstrom\", normal = \"y\" }, uniform = "
       "\"[0, 20, 0] km/s\" }");
-  const test::InIntegers made(text, 200);
+  const InIntegers made(text, 200);
   try {
     IntegerRun golden = made.run();
     golden.advance(200, nullptr);
