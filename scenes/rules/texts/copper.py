@@ -18,7 +18,8 @@ CUTOFF = 1.2247449 * LATTICE
 
 DENSITIES, DISTANCES = 1000, 800
 DENSITY_STEP = 0.1             # eV^2; a crystal at rest has 22
-DISTANCE_STEP = CUTOFF / (DISTANCES - 1)
+# The table goes on behind the cutoff, where the third neighbours are: LAMMPS's slopes at the end of a table are of fewer points.
+DISTANCE_STEP = CUTOFF / (DISTANCES - 6)
 
 
 def cubics(terms, r):
