@@ -104,6 +104,8 @@ class Text(unittest.TestCase):
         self.assertIsNotNone(integers.hash)
         self.assertGreater(doubles.curves["left.T"][-1], 306)
         self.assertAlmostEqual(integers.curves["left.T"][-1], doubles.curves["left.T"][-1], places=5)
+        self.assertEqual(cuboct.run(scene, "lattice").hash, integers.hash)
+        self.assertTrue(cuboct.crosscheck(scene, ["golden", "lattice"], steps=20))
         simulation = cuboct.Simulation(scene)
         simulation.step(40)
         self.assertEqual(simulation.fields["T"].shape, (simulation.particles,))
