@@ -137,6 +137,20 @@ TEST(PotentialFile, OfAStrangerEndsInAnErrorAtItsPlace) {
   EXPECT_NE(refusal_of(kSetfl, {}).find("has several elements: Aa, Bb"), std::string::npos);
 }
 
+TEST(PotentialFile, OfAStrangerDoesNoHarm) {
+  std::mt19937_64 random(9);
+  const std::string marks = " \n-+.e019x#\t\r\377";
+  size_t read = 0, refused = 0;
+  for (int k = 0; k < 3000; ++k) {
+    std::string text = kSetfl;
+    for (int n = 0; n < 3; ++n) text[random() % text.size()] = marks[random() % marks.size()];
+    if (k % 5 == 0) text.resize(random() % text.size());
+    refusal_of(text) == "none" ? ++read : ++refused;
+  }
+  EXPECT_GT(read, 300u);
+  EXPECT_GT(refused, 300u);
+}
+
 // The form of scenes/rules/texts/copper.py: a file of ten digits and its cubics are off by less than 1e-6.
 TEST(PotentialFile, OfThisTreeIsItsClosedForm) {
   const EmbeddedAtoms copper = read_embedded_atoms(kCopper, {}, false);
