@@ -84,9 +84,21 @@ class Understanding {
     scope.define_constant("cutoff", potential.cutoff, quantity::length.dimension);
     if (potential.lattice_constant > 0)
       scope.define_constant("lattice_constant", potential.lattice_constant, quantity::length.dimension);
-    if (potential.elements.size() > 1) return;
+    if (potential.elements.size() > 1) {
+      for (const char* name : {"density", "embedding", "pair"}) refuse_element(scope, name);
+      return;
+    }
     for (const char* suffix : {"", "_i", "_j"}) define_element(scope, suffix, Source::own_element);
     define_between(scope);
+  }
+  static void refuse_element(Scope& scope, const std::string& name) {
+    scope.define_function(
+        name,
+        {name == "embedding" ? Dimension{} : quantity::length.dimension, {}, [name](NodeId, bool) -> NodeId {
+           throw FormulaError{0, fmt::format("'{}' of which element? The potential has several", name),
+                              "density_i, density_j and pair in pair terms, density and embedding in a "
+                              "finish; formulas without particles have none"};
+         }});
   }
   // Functions of the element of the particle that `element` tells.
   void define_element(Scope& scope, const std::string& suffix, Source element) const {

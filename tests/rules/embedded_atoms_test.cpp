@@ -137,6 +137,20 @@ TEST(PotentialFile, OfAStrangerEndsInAnErrorAtItsPlace) {
   EXPECT_NE(refusal_of(kSetfl, {}).find("has several elements: Aa, Bb"), std::string::npos);
 }
 
+TEST(PotentialFile, OfAStrangerDoesNoHarm) {
+  std::mt19937_64 random(9);
+  const std::string marks = " \n-+.e019x#\t\r\377";
+  size_t read = 0, refused = 0;
+  for (int k = 0; k < 1000; ++k) {
+    std::string text = kSetfl;
+    for (int n = 0; n < 3; ++n) text[random() % text.size()] = marks[random() % marks.size()];
+    if (k % 5 == 0) text.resize(random() % text.size());
+    refusal_of(text) == "none" ? ++read : ++refused;
+  }
+  EXPECT_GT(read, 40u);
+  EXPECT_GT(refused, 300u);
+}
+
 // The form of scenes/rules/texts/copper.py: a file of ten digits and its cubics are off by less than 1e-6.
 TEST(PotentialFile, OfThisTreeIsItsClosedForm) {
   const EmbeddedAtoms copper = read_embedded_atoms(kCopper, {}, false);
@@ -293,6 +307,10 @@ TEST(EmbeddedAtoms, WhatIsWrongIsSaidAtItsPlace) {
   has("", "test.toml:4:47: a potential needs its 'file'");
   has(kOwnFile + ", element = \"Ni\"", "has no element 'Ni'");
   has(kOwnFile + ", elements = { firm = \"Cu\" }", "does not say which one the material");
+  if (!kPotentialFiles.empty())
+    has(fmt::format("file = \"{}/CuTa.eam.alloy\", elements = {{ matter = \"Cu\", other = \"Ta\" }}",
+                    kPotentialFiles),
+        "'pair' of which element? The potential has several");
   has("file = \"texts/eam.toml\"", "neither a setfl file nor a funcfl file");
   has("file = \"texts/none.eam\"", "none.eam");
   const auto own = [&](const std::string& keys) {
