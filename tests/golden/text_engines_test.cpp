@@ -21,7 +21,9 @@ struct TextCase {
 class TextEngines : public testing::TestWithParam<TextCase> {};
 
 TEST_P(TextEngines, LatticeHasGoldensBitsAndGoesOnFromItsCheckpoint) {
-  const Scene scene = read_scene(std::string(CUBOCT_SOURCE_DIR "/scenes/rules/") + GetParam().scene);
+  const std::string file = std::string(CUBOCT_SOURCE_DIR "/scenes/rules/") + GetParam().scene;
+  const std::vector<StageName> stages = stages_of(file);
+  const Scene scene = read_scene(file, {.stage = stages.empty() ? "" : stages.front().name});
   const Plan plan = program_plan_of(scene, Arch());
   const EngineKind golden_kind = cuboct::golden_kind(scene, plan);
   const auto golden = golden_kind.make(nullptr, false);
