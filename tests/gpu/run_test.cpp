@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The run loop around an engine that a test makes up: it drifts, and loses a particle when it is told to.
 #include "gpu_ref/run.h"
+#include "gpu_ref/rounds_engine.h"
 
 #include <gtest/gtest.h>
 
@@ -77,6 +78,9 @@ std::unique_ptr<Engine> make_real_engine(const Scene&, const Body& body, Arithme
 }
 std::unique_ptr<Engine> resume_real_engine(const Scene&, const Body&, Arithmetic, const Options&,
                                            const Memory&) {
+  return nullptr;
+}
+std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan&, const State&, const Options&) {
   return nullptr;
 }
 
