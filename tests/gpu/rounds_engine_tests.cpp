@@ -110,6 +110,10 @@ TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
     ASSERT_NE(at, std::string::npos);
     torn.replace(at, std::string(speed).size(), speed[3] == '-' ? "0, -400, 0" : "0, 400, 0");
   }
+  // No bond lasts: those of the grips would leave their tables.
+  const size_t lasting = torn.find("start.hard");
+  ASSERT_NE(lasting, std::string::npos);
+  torn.erase(lasting, torn.find('\n', lasting) - lasting);
   for (const Scene& scene : {read_scene(rules + "heat.toml"), parse_scene(torn, rules + "torn.toml")}) {
     const Plan plan = program_plan_of(scene, Arch());
     const auto golden = integer_run(scene, plan, nullptr);
@@ -120,7 +124,7 @@ TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
     EXPECT_EQ(found, expected);
     if (plan.program->rows == nullptr) continue;
     const std::vector<double> damage = device->damage();
-    EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.3; }), 20);
+    EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.25; }), 20);
     EXPECT_EQ(damage, golden->damage());
     const Counters counters = device->counters();
     EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
