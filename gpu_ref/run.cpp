@@ -200,9 +200,8 @@ cuboct::Counters Runner::counters() {
 // A rule that is text.
 std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan, const GpuChoice& choice,
                                             CheckpointReader* from) {
-  auto run = integer_run(scene, plan, from, [&](const State& state) {
-    return make_rounds_engine(plan, state, choice.engine);
-  });
+  auto run = integer_run(scene, plan, from,
+                         [&](const State& state) { return make_rounds_engine(plan, state, choice.engine); });
   if (choice.hooks.ready) choice.hooks.ready();
   return run;
 }

@@ -120,7 +120,7 @@ TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
     const auto device = integer_run(
         scene, plan, nullptr, [&](const State& state) { return gpu::make_rounds_engine(plan, state, {}); });
     std::vector<uint64_t> expected{golden->hash()}, found{device->hash()};
-    golden->advance(150, &expected), device->advance(150, &found);
+    golden->advance(90, &expected), device->advance(90, &found);
     EXPECT_EQ(found, expected);
     if (plan.program->rows == nullptr) continue;
     const std::vector<double> damage = device->damage();

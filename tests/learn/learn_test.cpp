@@ -190,17 +190,6 @@ TEST_F(LearnCommand, RefusesARestThatLoadsDoNotDisturb) {
 }
 
 // Of loads that strain a bond too far some strain it less, and their samples come first.
-TEST_F(LearnCommand, LeavesNothingOfALoadThatStrainsTooFar) {
-  const std::string path = study("[kernel]\nhorizons = [3]\n");
-  std::string text = cuboct::test::contents(path);
-  text.replace(text.find("waves = 1\n"), 10, "waves = 1\nstrain = 0.02\n");
-  std::ofstream(path) << text;
-  const auto answer = bench_.cuboct({"learn", path, "--out", bench_.path("none"), "--jobs", "1"});
-  EXPECT_EQ(answer.code, 2);
-  EXPECT_NE(answer.err.find("a bond is strained by 2."), std::string::npos) << answer.err;
-  EXPECT_FALSE(std::filesystem::exists(bench_.path("none")));
-}
-
 // A kept line that holds no field of the study's grid, or a sheet that did not move.
 TEST_F(LearnCommand, RefusesKeptSamplesOfAnotherGrid) {
   const std::string path = study("[kernel]\nhorizons = [3]\ndegrees = [5]\nseeds = 1\n");
