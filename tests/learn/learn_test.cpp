@@ -189,7 +189,6 @@ TEST_F(LearnCommand, RefusesARestThatLoadsDoNotDisturb) {
   EXPECT_FALSE(std::filesystem::exists(bench_.path("none")));
 }
 
-// Of loads that strain a bond too far some strain it less, and their samples come first.
 // A kept line that holds no field of the study's grid, or a sheet that did not move.
 TEST_F(LearnCommand, RefusesKeptSamplesOfAnotherGrid) {
   const std::string path = study("[kernel]\nhorizons = [3]\ndegrees = [5]\nseeds = 1\n");

@@ -44,6 +44,7 @@ bool FinishPass::run(Particles& particles, const Block& block, const Active& act
   for (uint32_t begin = block.begin; begin < block.end; begin += VectorBlock::kRoom) {
     const size_t lanes = std::min<size_t>(VectorBlock::kRoom, block.end - begin);
     fill(particles, begin, lanes, step, sums);
+    if (!wake(particles, begin, lanes, active)) continue;
     fits = block_.run(0, lanes) && fits;
     for (const graph::Write& write : round_.writes)
       keep(block_.values(write.node),
@@ -59,6 +60,22 @@ bool FinishPass::run(Particles& particles, const Block& block, const Active& act
     }
   }
   return fits;
+}
+
+// Particles that sleep have no sums: their lanes become those of one that is awake, so that no check fails by
+// them. False where all sleep.
+bool FinishPass::wake(const Particles& particles, uint32_t begin, size_t lanes, const Active& active) {
+  if (active.awake == nullptr) return true;
+  const auto awake = [&](size_t k) { return active.awake[particles.cell[begin + k]] != 0; };
+  size_t first = 0;
+  while (first < lanes && !awake(first)) ++first;
+  if (first == lanes) return false;
+  for (const int n : inputs_) {
+    double* values = block_.values(n);
+    for (size_t k = 0; k < VectorBlock::padded(lanes); ++k)
+      if (k >= lanes || !awake(k)) values[k] = values[first];
+  }
+  return true;
 }
 
 void FinishPass::keep(const double* values, PaddedArray<double>& to, uint32_t begin, size_t lanes,

@@ -28,6 +28,7 @@ class FinishPass {
  private:
   void fill(const Particles& particles, uint32_t begin, size_t lanes, uint64_t step,
             const std::vector<PaddedArray<double>>& sums);
+  bool wake(const Particles& particles, uint32_t begin, size_t lanes, const Active& active);
   void keep(const double* values, PaddedArray<double>& to, uint32_t begin, size_t lanes,
             const Particles& particles, const Active& active, bool field) const;
 

@@ -28,6 +28,11 @@ Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule, const
       rule_(rule),
       once_(rows == nullptr && std::ranges::all_of(program.rounds, PairPass::is_mutual)) {
   if (rows != nullptr) {
+    // In a ring of three cells all are neighbours, and a partner is met two cells away.
+    if (std::ranges::count(lattice.period(), 3) > 0)
+      throw InputError("a box of three cells along an axis: bonds meet around it in golden alone",
+                       "engine golden, or a longer box")
+          .about({"box.cells", "box.size", "box"});
     bonds_ = {rows, &bond_numbers_, rule.cell, {}};
     for (size_t a = 0; a < 3; ++a) bonds_.period[a] = lattice.period()[a] * rule.cell;
     for (int k = 0; k < program.bond_numbers(); ++k) {

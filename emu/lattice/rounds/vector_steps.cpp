@@ -93,7 +93,7 @@ void lookup(const VectorStep& step, size_t lanes) {
   const W mask = hn::Set(u, (uint64_t{1} << table.index_bits) - 1), t_mask = hn::Set(u, table.t_mask);
   const V t_unit = hn::Set(d, table.t_unit);
   each(step, lanes, [&](size_t k) {
-    const V a = hn::Load(d, step.in[0] + k);
+    const V a = hn::Add(hn::Load(d, step.in[0] + k), hn::Zero(d));  // no bit of -0.0
     W index;
     V t;
     if (table.octaves) {
