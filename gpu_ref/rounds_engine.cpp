@@ -485,7 +485,8 @@ class RoundsEngine final : public IntegerEngine {
 
 std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan& plan, const State& initial,
                                                   const Options& options) {
-  if (plan.program->rows != nullptr && std::ranges::count(plan.lattice.period(), 3) > 0)
+  const Cell& ring = plan.lattice.period();
+  if (plan.program->rows != nullptr && std::count(ring.begin(), ring.end(), 3) > 0)
     throw InputError("a box of three cells along an axis: bonds meet around it in golden alone",
                      "engine golden, or a longer box")
         .about({"box.cells", "box.size", "box"});
