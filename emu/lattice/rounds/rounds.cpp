@@ -58,6 +58,11 @@ bool Rounds::knows_time() const {
 }
 
 void Rounds::cut(size_t blocks, size_t room) {
+  if (room > Partner::kMost)
+    throw InputError(
+        fmt::format("{} particles in one process: a rule of text lists up to {}", room, Partner::kMost),
+        "a smaller body")
+        .about({"rule.file", "rule"});
   parts_.resize(blocks);
   for (Part& part : parts_) {
     if (!part.pairs.empty()) continue;
