@@ -80,7 +80,6 @@ void LatticeEngine::Impl::widen_group_cells(uint32_t index) {
 
 // Whether the order of storage lets an entry hold several pairs.
 bool LatticeEngine::Impl::crystal() const {
-  if (rounds_) return false;
   size_t entries = 0, pairs = 0;
   for (const Block& block : blocks_) {
     entries += block.inside.entries.size();
@@ -99,13 +98,11 @@ void LatticeEngine::Impl::build() {
     store_by_cell(), ++counters_.sorts;
   {
     Bins bins(lattice_, members_, index_, particles_, snapshot_.position_frac, threads_);
-    if (rounds_) rounds_->cut(blocks_.size(), snapshot_.room);
+    if (rounds_) rounds_->cut(blocks_, snapshot_.room);
     for_each_block([&](Block& block) {
       Search search(lattice_, rows_, cutoff_ + skin_, bins);
       if (rounds_ && rounds_->bonded())
-        rounds_->build(number_of(block), block, particles_, index_);
-      else if (rounds_)
-        rounds_->build(number_of(block), block, particles_, std::move(search));
+        rounds_->list_bonds(number_of(block), block, particles_, index_);
       else
         build_list(rule_, particles_, stored_, std::move(search), block);
     });
@@ -125,7 +122,7 @@ void LatticeEngine::Impl::build() {
 // Where few particles moved far, as around a crack or an impact: lists anew the groups of those, and of all
 // around where they are now. False where that is not worth it.
 bool LatticeEngine::Impl::mend() {
-  if (shared() || rounds_) return false;
+  if (shared()) return false;
   std::vector<uint32_t> strays;
   for_each_moved([&](uint32_t p) {
     if (snapshot_.astray(lattice_, particles_, p, kMendFrom * skin_)) strays.push_back(p);
@@ -157,12 +154,7 @@ void LatticeEngine::Impl::prune(double skin) {
   near_skin_ = skin;
   near_moved_ = 0;
   const double reach = (cutoff_ + near_floor_) * rule_.cell * (1 + 1e-9);
-  for_each_block([&](Block& block) {
-    if (rounds_)
-      rounds_->prune(number_of(block), block, particles_, reach);
-    else
-      kernels_.prune(particles_, reach, only, block);
-  });
+  for_each_block([&](Block& block) { kernels_.prune(particles_, reach, only, block); });
   ++counters_.near_lists;
   counters_.near_parts += only != nullptr;
 }

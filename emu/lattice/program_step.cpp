@@ -28,7 +28,7 @@ void LatticeEngine::Impl::run_rounds(const Active& active) {
     if (!fits) fail_as_golden();
   };
   for (size_t k = 0; k < rounds_->program().rounds.size(); ++k) {
-    all([&](Block& block) { return rounds_->meet(k, number_of(block), block, particles_, active, step_); });
+    all([&](Block& block) { return rounds_->meet(k, number_of(block), {particles_, block, active, step_}); });
     all([&](Block& block) { return rounds_->finish(k, number_of(block), block, particles_, active, step_); });
   }
   for_each_block([&](Block& block) { rounds_->move(block, particles_, active); });

@@ -39,11 +39,11 @@ FinishPass::FinishPass(const graph::FixedProgram& program, const graph::Round& r
 }
 
 bool FinishPass::run(Particles& particles, const Block& block, const Active& active, uint64_t step,
-                     const std::vector<PaddedArray<double>>& sums, Moves& moves) {
+                     const Sums& sums, Moves& moves) {
   bool fits = true;
   for (uint32_t begin = block.begin; begin < block.end; begin += VectorBlock::kRoom) {
     const size_t lanes = std::min<size_t>(VectorBlock::kRoom, block.end - begin);
-    fill(particles, begin, lanes, step, sums);
+    fill(particles, block.begin, begin, lanes, step, sums);
     if (!wake(particles, begin, lanes, active)) continue;
     fits = block_.run(0, lanes) && fits;
     for (const graph::Write& write : round_.writes)
@@ -88,8 +88,8 @@ void FinishPass::keep(const double* values, PaddedArray<double>& to, uint32_t be
   }
 }
 
-void FinishPass::fill(const Particles& particles, uint32_t begin, size_t lanes, uint64_t step,
-                      const std::vector<PaddedArray<double>>& sums) {
+void FinishPass::fill(const Particles& particles, uint32_t block_begin, uint32_t begin, size_t lanes,
+                      uint64_t step, const Sums& sums) {
   for (const int n : inputs_) {
     const Node& node = round_.finish.nodes[static_cast<size_t>(n)];
     const auto axis = static_cast<size_t>(node.axis), index = static_cast<size_t>(node.index);
@@ -101,7 +101,7 @@ void FinishPass::fill(const Particles& particles, uint32_t begin, size_t lanes, 
     };
     switch (node.source) {
       case Source::sum:
-        copy(sums[first_of_sum_[index] + axis]);
+        std::copy_n(sums[first_of_sum_[index] + axis].data() + (begin - block_begin), lanes, out);
         break;
       case Source::own_x:
         each([&](uint32_t p) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "emu/lattice/kernel.h"
+#include "emu/lattice/rounds/pair_pass.h"
 #include "emu/lattice/rounds/vector_block.h"
 #include "model/graph/program.h"
 
@@ -22,12 +23,12 @@ class FinishPass {
 
   // Writes fields, and, of the last round, `moves`, of the awake particles. False where something does not
   // fit.
-  bool run(Particles& particles, const Block& block, const Active& active, uint64_t step,
-           const std::vector<PaddedArray<double>>& sums, Moves& moves);
+  bool run(Particles& particles, const Block& block, const Active& active, uint64_t step, const Sums& sums,
+           Moves& moves);
 
  private:
-  void fill(const Particles& particles, uint32_t begin, size_t lanes, uint64_t step,
-            const std::vector<PaddedArray<double>>& sums);
+  void fill(const Particles& particles, uint32_t block_begin, uint32_t begin, size_t lanes, uint64_t step,
+            const Sums& sums);
   bool wake(const Particles& particles, uint32_t begin, size_t lanes, const Active& active);
   void keep(const double* values, PaddedArray<double>& to, uint32_t begin, size_t lanes,
             const Particles& particles, const Active& active, bool field) const;

@@ -93,13 +93,16 @@ bool PairPass::is_mutual(const graph::Round& round) {
   return mutual(round.when) && std::ranges::all_of(all_terms(round), mutual);
 }
 
-PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round, bool once)
+PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round, const BondSpace& space,
+                   bool once)
     : program_(program),
       round_(round),
       graph_(round.pair),
+      space_(space),
+      once_(once),
       when_(round.when),
       terms_(all_terms(round)),
-      signs_(once ? signs_of(round) : std::vector<double>()),
+      signs_(signs_of(round)),
       early_(early_nodes(round, all_outputs(round))),
       late_(beyond(graph_, all_outputs(round), early_)),
       early_inputs_(inputs_of(graph_, early_)),
@@ -109,87 +112,142 @@ PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round
       own_(VectorBlock::kRoom),
       other_(VectorBlock::kRoom),
       chosen_(VectorBlock::kRoom),
-      bond_(VectorBlock::kRoom) {
+      slot_(VectorBlock::kRoom) {
   for (const int n : early_inputs_)
     if (const Node& node = graph_.nodes[static_cast<size_t>(n)]; node.source == Source::apart)
       apart_.emplace_back(static_cast<size_t>(node.axis), block_.values(n));
 }
 
-bool PairPass::run(const Particles& particles, const PartnerList& list, const Block& block,
-                   const Active& active, uint64_t step, std::vector<PaddedArray<double>>& sums,
-                   const Bonds& bonds) {
-  for (auto& sum : sums) std::fill(sum.data() + block.begin, sum.data() + block.end, 0.0);
+bool PairPass::run(const Scope& scope, BondList& bonds, Sums& sums) {
+  for (auto& sum : sums) std::fill_n(sum.data(), sum.size(), 0.0);
   fits_ = true;
-  const uint8_t* wanted = signs_.empty() ? active.awake : active.near;
-  for (uint32_t i = block.begin; i < block.end; ++i) {
-    if (wanted != nullptr && wanted[particles.cell[i]] == 0) continue;
-    const PartnerList::Row& row = list.row(i - block.begin);
-    for (uint32_t k = row.begin; k < row.near;) {
-      const uint32_t end = std::min(row.near, k + static_cast<uint32_t>(VectorBlock::kRoom - count_));
-      if (bonds.rows == nullptr)
-        for (; k < end; ++k) meet(particles, i, list.partners()[k]);
-      else
-        for (; k < end; ++k)
-          meet_bond(particles, i, Partner::index(list.partners()[k]), row.bond + (k - row.begin), bonds);
-      if (count_ == VectorBlock::kRoom) flush(particles, block, active, step, sums, bonds);
-    }
-  }
-  flush(particles, block, active, step, sums, bonds);
+  if (space_.rows == nullptr)
+    meet_pairs(scope, sums);
+  else
+    meet_bonds(scope, bonds, sums);
   return fits_;
 }
 
-inline void PairPass::meet(const Particles& particles, uint32_t own, uint32_t partner) {
-  const uint32_t other = Partner::index(partner);
-  own_[count_] = own;
-  other_[count_] = other;
-  const auto& shift = particles.shift[Partner::shift(partner)];
-  for (const auto& [axis, lanes] : apart_)
-    lanes[count_] = particles.x[axis][other] - particles.x[axis][own] + shift[axis];
-  ++count_;
+void PairPass::meet_pairs(const Scope& scope, Sums& sums) {
+  BondList none;
+  const auto all = [&](const PairList& list, size_t k, uint32_t group, bool turned) {
+    const uint32_t base = scope.block.begin + group * kGroup;
+    if (scope.active.near != nullptr && !any_flag(scope.active.near, scope.particles, base / kGroup)) return;
+    const PairList::Group& of = list.groups[k];
+    for (uint32_t e = of.begin; e < of.begin + of.near; ++e) {
+      if (count_ + 2 * kGroup > VectorBlock::kRoom)
+        flush(scope, once_ && turned ? Ends::both : Ends::own, none, sums);
+      const size_t from = count_;
+      meet(scope, base, list.entries[e]);
+      if (turned && !once_) turn(from);
+    }
+  };
+  for (uint32_t k = 0; k < scope.block.groups(); ++k) all(scope.block.inside, k, k, true);
+  flush(scope, once_ ? Ends::both : Ends::own, none, sums);
+  const Edge& beside = scope.block.beside;
+  for (size_t k = 0; k < beside.group.size(); ++k) all(beside.pairs, k, beside.group[k], false);
+  flush(scope, Ends::own, none, sums);
 }
 
-// Of the partner's images the one in the 27 cells around own. Where both are within a cell's edge, their
-// cells are neighbours.
-inline void PairPass::meet_bond(const Particles& particles, uint32_t own, uint32_t other, uint64_t bond,
-                                const Bonds& bonds) {
-  std::array<double, 3> apart;
-  bool met = true;
-  for (size_t a = 0; a < 3; ++a) {
-    apart[a] = particles.x[a][other] - particles.x[a][own];
-    if (bonds.period[a] > 0) apart[a] -= std::round(apart[a] / bonds.period[a]) * bonds.period[a];
-    if (std::abs(apart[a]) < bonds.cell) continue;
-    const double x = particles.x[a][own];
-    met = met && std::abs(std::floor((x + apart[a]) / bonds.cell) - std::floor(x / bonds.cell)) <= 1;
+// From its lower particle's end.
+inline void PairPass::meet(const Scope& scope, uint32_t base, const Entry& entry) {
+  const Particles& particles = scope.particles;
+  const auto& shift = particles.shift[entry.shift];
+  const auto first = static_cast<uint32_t>(entry.first);
+  if (entry.lanes == 0xff) {
+    for (uint32_t l = 0; l < kGroup; ++l) own_[count_ + l] = base + l, other_[count_ + l] = first + l;
+    for (const auto& [axis, lanes] : apart_) {
+      const double *own = particles.x[axis].data() + base, *other = particles.x[axis].data() + entry.first;
+      for (uint32_t l = 0; l < kGroup; ++l) lanes[count_ + l] = other[l] - own[l] + shift[axis];
+    }
+    count_ += kGroup;
+    return;
   }
-  if (!met) {
-    fits_ = fits_ && is_broken(bond, bonds);
+  for (uint32_t l = 0; l < kGroup; ++l) {
+    if ((entry.lanes >> l & 1) == 0) continue;
+    own_[count_] = base + l;
+    other_[count_] = first + l;
+    for (const auto& [axis, lanes] : apart_)
+      lanes[count_] = particles.x[axis][first + l] - particles.x[axis][base + l] + shift[axis];
+    ++count_;
+  }
+}
+
+// The lanes from there on again, from the other end.
+void PairPass::turn(size_t from) {
+  const size_t end = count_;
+  for (size_t k = from; k < end; ++k, ++count_) {
+    own_[count_] = other_[k];
+    other_[count_] = own_[k];
+    for (const auto& [axis, lanes] : apart_) lanes[count_] = -lanes[k];
+  }
+}
+
+void PairPass::meet_bonds(const Scope& scope, BondList& bonds, Sums& sums) {
+  for (uint32_t k = 0; k < scope.block.groups(); ++k) {
+    const uint32_t base = scope.block.begin + k * kGroup;
+    if (scope.active.awake != nullptr && !any_flag(scope.active.awake, scope.particles, base / kGroup))
+      continue;
+    const PairList::Group& group = bonds.pairs.groups[k];
+    for (uint32_t e = group.begin; e < group.begin + group.count; ++e) {
+      if (count_ + kGroup > VectorBlock::kRoom) flush(scope, Ends::own, bonds, sums);
+      const Entry& entry = bonds.pairs.entries[e];
+      for (uint32_t l = 0; l < kGroup; ++l)
+        if (entry.lanes >> l & 1) meet_bond(scope, base, entry, l, BondList::slot(e, l), bonds);
+    }
+  }
+  flush(scope, Ends::own, bonds, sums);
+}
+
+// Where both are within a cell's edge, their cells are neighbours.
+inline void PairPass::meet_bond(const Scope& scope, uint32_t base, const Entry& entry, uint32_t lane,
+                                size_t slot, const BondList& bonds) {
+  const Particles& particles = scope.particles;
+  const uint32_t own = base + lane, other = static_cast<uint32_t>(entry.first) + lane;
+  std::array<double, 3> apart;
+  bool within = true;
+  for (size_t a = 0; a < 3; ++a) {
+    apart[a] = particles.x[a][other] - particles.x[a][own] + particles.shift[entry.shift][a];
+    within = within && std::abs(apart[a]) < space_.cell;
+  }
+  if (!within && !is_met({particles.x[0][own], particles.x[1][own], particles.x[2][own]}, apart)) {
+    fits_ = fits_ && is_broken(slot, bonds);
     return;
   }
   own_[count_] = own;
   other_[count_] = other;
-  bond_[count_] = bond;
+  slot_[count_] = slot;
   for (const auto& [axis, lanes] : apart_) lanes[count_] = apart[axis];
   ++count_;
 }
 
+// `apart` becomes that of the partner's image in the 27 cells around own. False: there is none.
+bool PairPass::is_met(const std::array<double, 3>& own, std::array<double, 3>& apart) const {
+  for (size_t a = 0; a < 3; ++a) {
+    if (space_.period[a] > 0) apart[a] -= std::round(apart[a] / space_.period[a]) * space_.period[a];
+    const double cells = std::floor((own[a] + apart[a]) / space_.cell) - std::floor(own[a] / space_.cell);
+    if (std::abs(cells) > 1) return false;
+  }
+  return true;
+}
+
 // Rare: golden's own.
-bool PairPass::is_broken(uint64_t bond, const Bonds& bonds) {
+bool PairPass::is_broken(size_t slot, const BondList& bonds) const {
   std::vector<int64_t> numbers;
-  for (const auto& values : *bonds.numbers) numbers.push_back(static_cast<int64_t>(values[bond]));
-  const auto constants =
-      bonds.rows->constants.data() + bonds.rows->kind[bond] * program_.bond_constants.size();
+  for (const auto& values : bonds.numbers) numbers.push_back(static_cast<int64_t>(values[slot]));
+  const auto constants = space_.rows->constants.data() + bonds.kind[slot] * program_.bond_constants.size();
   return cuboct::is_broken(program_, {.bond = numbers.data(), .bond_constants = constants});
 }
 
-void PairPass::write_bonds(size_t lanes, const Particles& particles, const Active& active,
-                           const Bonds& bonds) {
+void PairPass::write_bonds(const Scope& scope, size_t lanes, BondList& bonds) {
   for (const graph::Write& write : round_.bond_writes) {
     const double* value = block_.values(write.node);
     PaddedArray<double>& to =
-        (*bonds.numbers)[static_cast<size_t>(program_.bond_place(write.field) + write.component)];
+        bonds.numbers[static_cast<size_t>(program_.bond_place(write.field) + write.component)];
     for (size_t k = 0; k < lanes; ++k) {
-      if (active.changed != nullptr && to[bond_[k]] != value[k]) active.mark(particles.cell[own_[k]]);
-      to[bond_[k]] = value[k];
+      if (scope.active.changed != nullptr && to[slot_[k]] != value[k])
+        scope.active.mark(scope.particles.cell[own_[k]]);
+      to[slot_[k]] = value[k];
     }
   }
 }
@@ -197,24 +255,23 @@ void PairPass::write_bonds(size_t lanes, const Particles& particles, const Activ
 void PairPass::repeat_first(const std::vector<int>& nodes, size_t lanes) {
   const size_t end = VectorBlock::padded(lanes);
   for (auto* index : {&own_, &other_}) std::fill(index->data() + lanes, index->data() + end, (*index)[0]);
-  std::fill(bond_.data() + lanes, bond_.data() + end, bond_[0]);
+  std::fill(slot_.data() + lanes, slot_.data() + end, slot_[0]);
   for (const int n : nodes) {
     double* values = block_.values(n);
     std::fill(values + lanes, values + end, values[0]);
   }
 }
 
-void PairPass::flush(const Particles& particles, const Block& block, const Active& active, uint64_t step,
-                     std::vector<PaddedArray<double>>& sums, const Bonds& bonds) {
+void PairPass::flush(const Scope& scope, Ends ends, BondList& bonds, Sums& sums) {
   if (count_ == 0) return;
   repeat_first(early_inputs_, count_);
-  fill(early_inputs_, particles, count_, step, bonds);
+  fill(scope, early_inputs_, count_, bonds);
   fits_ = block_.run(0, count_) && fits_;
   if (const size_t lanes = choose(count_); lanes > 0) {
-    fill(late_inputs_, particles, lanes, step, bonds);
+    fill(scope, late_inputs_, lanes, bonds);
     fits_ = block_.run(1, lanes) && fits_;
-    add(lanes, block, sums);
-    write_bonds(lanes, particles, active, bonds);
+    add(scope, ends, lanes, sums);
+    write_bonds(scope, lanes, bonds);
   }
   count_ = 0;
 }
@@ -233,14 +290,14 @@ size_t PairPass::choose(size_t lanes) {
   };
   move(own_.data());
   move(other_.data());
-  move(bond_.data());
+  move(slot_.data());
   for (const int n : kept_) move(block_.values(n));
   repeat_first(kept_, count);
   return count;
 }
 
-void PairPass::fill(const std::vector<int>& inputs, const Particles& particles, size_t lanes, uint64_t step,
-                    const Bonds& bonds) {
+void PairPass::fill(const Scope& scope, const std::vector<int>& inputs, size_t lanes, const BondList& bonds) {
+  const Particles& particles = scope.particles;
   const size_t padded = VectorBlock::padded(lanes);
   const auto types = static_cast<size_t>(program_.types);
   for (const int n : inputs) {
@@ -291,17 +348,16 @@ void PairPass::fill(const std::vector<int>& inputs, const Particles& particles, 
         each([&](size_t k) { return particles.id_of(other[k]); });
         break;
       case Source::step:
-        each([&](size_t) { return step; });
+        each([&](size_t) { return scope.step; });
         break;
       case Source::bond_field: {
         const auto place = static_cast<size_t>(program_.bond_place(node.index)) + axis;
-        each([from = (*bonds.numbers)[place].data(), this](size_t k) { return from[bond_[k]]; });
+        each([from = bonds.numbers[place].data(), this](size_t k) { return from[slot_[k]]; });
         break;
       }
       case Source::bond_constant: {
-        const graph::BondRows& rows = *bonds.rows;
         const size_t numbers = program_.bond_constants.size();
-        each([&](size_t k) { return rows.constants[rows.kind[bond_[k]] * numbers + index]; });
+        each([&](size_t k) { return space_.rows->constants[bonds.kind[slot_[k]] * numbers + index]; });
         break;
       }
       default:
@@ -310,26 +366,15 @@ void PairPass::fill(const std::vector<int>& inputs, const Particles& particles, 
   }
 }
 
-// Pairs of one particle stand together. Whole numbers below 2^51 in any order.
-void PairPass::add(size_t lanes, const Block& block, std::vector<PaddedArray<double>>& sums) {
-  for (size_t begin = 0, end; begin < lanes; begin = end) {
-    const uint32_t own = own_[begin];
-    for (end = begin + 1; end < lanes && own_[end] == own;) ++end;
-    for (size_t t = 0; t < terms_.size(); ++t) {
-      const double* term = block_.values(terms_[t]);
-      std::array<double, 4> part{sums[t][own], 0, 0, 0};
-      size_t k = begin;
-      for (; k + 4 <= end; k += 4)
-        for (size_t way = 0; way < 4; ++way) part[way] += term[k + way];
-      for (; k < end; ++k) part[0] += term[k];
-      sums[t][own] = part[0] + part[1] + part[2] + part[3];
-    }
-  }
-  for (size_t t = 0; t < signs_.size(); ++t) {
+// Whole numbers below 2^51 in any order.
+void PairPass::add(const Scope& scope, Ends ends, size_t lanes, Sums& sums) {
+  const uint32_t begin = scope.block.begin;
+  for (size_t t = 0; t < terms_.size(); ++t) {
     const double* term = block_.values(terms_[t]);
     double* sum = sums[t].data();
-    for (size_t k = 0; k < lanes; ++k)
-      if (other_[k] >= block.begin && other_[k] < block.end) sum[other_[k]] += signs_[t] * term[k];
+    for (size_t k = 0; k < lanes; ++k) sum[own_[k] - begin] += term[k];
+    if (ends == Ends::own) continue;
+    for (size_t k = 0; k < lanes; ++k) sum[other_[k] - begin] += signs_[t] * term[k];
   }
 }
 

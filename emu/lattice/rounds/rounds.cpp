@@ -33,12 +33,8 @@ Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule, const
       throw InputError("a box of three cells along an axis: bonds meet around it in golden alone",
                        "engine golden, or a longer box")
           .about({"box.cells", "box.size", "box"});
-    bonds_ = {rows, &bond_numbers_, rule.cell, {}};
-    for (size_t a = 0; a < 3; ++a) bonds_.period[a] = lattice.period()[a] * rule.cell;
-    for (int k = 0; k < program.bond_numbers(); ++k) {
-      bond_numbers_.emplace_back(rows->other.size());
-      bonds_before_.emplace_back(rows->other.size());
-    }
+    space_ = {rows, rule.cell, {}};
+    for (size_t a = 0; a < 3; ++a) space_.period[a] = lattice.period()[a] * rule.cell;
   }
   for (const graph::Round& round : program.rounds) {
     check_doubles(round.pair, "a pair of " + round.name);
@@ -57,25 +53,22 @@ bool Rounds::knows_time() const {
   });
 }
 
-void Rounds::cut(size_t blocks, size_t room) {
-  if (room > Partner::kMost)
-    throw InputError(
-        fmt::format("{} particles in one process: a rule of text lists up to {}", room, Partner::kMost),
-        "a smaller body")
-        .about({"rule.file", "rule"});
-  parts_.resize(blocks);
-  for (Part& part : parts_) {
-    if (!part.pairs.empty()) continue;
-    for (const graph::Round& round : program_.rounds) {
-      part.pairs.push_back(std::make_unique<PairPass>(program_, round, once_));
-      part.finishes.push_back(std::make_unique<FinishPass>(program_, round, rule_));
+void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
+  parts_.resize(blocks.size());
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    Part& part = parts_[b];
+    part.sums.resize(program_.rounds.size());
+    for (size_t k = 0; k < program_.rounds.size(); ++k) {
+      const graph::Round& round = program_.rounds[k];
+      if (part.pairs.size() == k) {
+        part.pairs.push_back(std::make_unique<PairPass>(program_, round, space_, once_));
+        part.finishes.push_back(std::make_unique<FinishPass>(program_, round, rule_));
+      }
+      part.sums[k].clear();
+      for (const graph::Sum& sum : round.sums)
+        for (size_t n = 0; n < sum.terms.size(); ++n)
+          part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
     }
-  }
-  sums_.clear();
-  for (const graph::Round& round : program_.rounds) {
-    auto& sums = sums_.emplace_back();
-    for (const graph::Sum& sum : round.sums)
-      for (size_t n = 0; n < sum.terms.size(); ++n) sums.emplace_back(room);
   }
   for (auto* arrays : {&moves_.v, &moves_.drift})
     for (auto& array : *arrays) array = PaddedArray<double>(room);
@@ -83,44 +76,40 @@ void Rounds::cut(size_t blocks, size_t room) {
     for (auto& array : moves_.u) array = PaddedArray<double>(room);
 }
 
-void Rounds::build(size_t b, const Block& block, const Particles& particles, Search search) {
-  parts_[b].list.build(block, particles, program_.position_frac, once_, std::move(search));
+void Rounds::list_bonds(size_t b, const Block& block, const Particles& particles, const Index& index) {
+  BondList& list = parts_[b].bonds;
+  const auto numbers = static_cast<size_t>(program_.bond_numbers());
+  list.build(block, particles, index, *space_.rows, space_.period, program_.bond_numbers());
+  for (size_t slot = 0; slot < list.bond.size(); ++slot)
+    for (size_t k = 0; k < numbers; ++k)
+      if (list.bond[slot] != BondList::kNoBond)
+        list.numbers[k][slot] = static_cast<double>(bonds_[list.bond[slot] * numbers + k]);
 }
 
-void Rounds::build(size_t b, const Block& block, const Particles& particles, const Index& index) {
-  parts_[b].list.build(block, particles, index, *bonds_.rows);
-}
-
-void Rounds::take_bonds(const std::vector<int64_t>& bonds) {
-  const size_t numbers = bond_numbers_.size();
-  for (size_t k = 0; k < bonds.size(); ++k)
-    bond_numbers_[k % numbers][k / numbers] = static_cast<double>(bonds[k]);
-}
-
-std::vector<int64_t> Rounds::whole(const BondNumbers& numbers) {
-  std::vector<int64_t> bonds;
-  for (size_t b = 0; b < (numbers.empty() ? 0 : numbers[0].size()); ++b)
-    for (const auto& values : numbers) bonds.push_back(static_cast<int64_t>(values[b]));
+std::vector<int64_t> Rounds::whole(std::vector<PaddedArray<double>> BondList::*values) const {
+  std::vector<int64_t> bonds = bonds_;
+  const auto numbers = static_cast<size_t>(program_.bond_numbers());
+  for (const Part& part : parts_)
+    for (size_t slot = 0; slot < part.bonds.bond.size(); ++slot)
+      for (size_t k = 0; k < numbers; ++k)
+        if (const uint64_t bond = part.bonds.bond[slot]; bond != BondList::kNoBond)
+          bonds[bond * numbers + k] = static_cast<int64_t>((part.bonds.*values)[k][slot]);
   return bonds;
 }
 
 void Rounds::keep_bonds() {
-  for (size_t k = 0; k < bond_numbers_.size(); ++k)
-    std::copy_n(bond_numbers_[k].data(), bond_numbers_[k].size(), bonds_before_[k].data());
+  for (Part& part : parts_)
+    for (size_t k = 0; k < part.bonds.numbers.size(); ++k)
+      std::copy_n(part.bonds.numbers[k].data(), part.bonds.numbers[k].size(), part.bonds.before[k].data());
 }
 
-void Rounds::prune(size_t b, const Block& block, const Particles& particles, double reach) {
-  parts_[b].list.prune(block, particles, reach);
-}
-
-bool Rounds::meet(size_t k, size_t b, const Block& block, const Particles& particles, const Active& active,
-                  uint64_t step) {
-  return parts_[b].pairs[k]->run(particles, parts_[b].list, block, active, step, sums_[k], bonds_);
+bool Rounds::meet(size_t k, size_t b, const Scope& scope) {
+  return parts_[b].pairs[k]->run(scope, parts_[b].bonds, parts_[b].sums[k]);
 }
 
 bool Rounds::finish(size_t k, size_t b, const Block& block, Particles& particles, const Active& active,
                     uint64_t step) {
-  return parts_[b].finishes[k]->run(particles, block, active, step, sums_[k], moves_);
+  return parts_[b].finishes[k]->run(particles, block, active, step, parts_[b].sums[k], moves_);
 }
 
 void Rounds::move(Block& block, Particles& particles, const Active& active) {

@@ -21,24 +21,23 @@ class Rounds {
   // Whether some value depends on the number of the step: then nothing is ever at rest.
   bool knows_time() const;
   // Partners are those of bonds, and no list grows old.
-  bool bonded() const { return bonds_.rows != nullptr; }
-  void build(size_t b, const Block& block, const Particles& particles, const Index& index);
+  bool bonded() const { return space_.rows != nullptr; }
+
   // What the rounds keep of bonds, in the order of State::bonds.
-  void take_bonds(const std::vector<int64_t>& bonds);
-  std::vector<int64_t> give_bonds() const { return whole(bond_numbers_); }
+  void take_bonds(const std::vector<int64_t>& bonds) { bonds_ = bonds; }
+  std::vector<int64_t> give_bonds() const { return whole(&BondList::numbers); }
   // Of the step at hand, before it wrote any.
   void keep_bonds();
-  std::vector<int64_t> bonds_before() const { return whole(bonds_before_); }
+  std::vector<int64_t> bonds_before() const { return whole(&BondList::before); }
 
   // For particles stored in these blocks from now on, at places below `room`.
-  void cut(size_t blocks, size_t room);
-  void build(size_t b, const Block& block, const Particles& particles, Search search);
-  void prune(size_t b, const Block& block, const Particles& particles, double reach);
+  void cut(const std::vector<Block>& blocks, size_t room);
+  // Of a bonded program, once.
+  void list_bonds(size_t b, const Block& block, const Particles& particles, const Index& index);
 
   // Of round k, all blocks after one another: the sums of pairs, then the finish. False where something does
   // not fit.
-  bool meet(size_t k, size_t b, const Block& block, const Particles& particles, const Active& active,
-            uint64_t step);
+  bool meet(size_t k, size_t b, const Scope& scope);
   bool finish(size_t k, size_t b, const Block& block, Particles& particles, const Active& active,
               uint64_t step);
   // After the last round: velocities, displacements and places, and who left its cell.
@@ -46,22 +45,21 @@ class Rounds {
 
  private:
   struct Part {
-    PartnerList list;
     std::vector<std::unique_ptr<PairPass>> pairs;  // by round
     std::vector<std::unique_ptr<FinishPass>> finishes;
+    std::vector<Sums> sums;
+    BondList bonds;
   };
   bool move(Particles& particles, uint32_t p, Crossing& crossing, double& speed2) const;
+  std::vector<int64_t> whole(std::vector<PaddedArray<double>> BondList::*numbers) const;
 
   const graph::FixedProgram& program_;
   const KernelRule& rule_;
-  bool once_;                                           // rows have each pair inside a block once
-  std::vector<Part> parts_;                             // by block
-  std::vector<std::vector<PaddedArray<double>>> sums_;  // by round
+  bool once_;  // terms are made once for both ends
+  BondSpace space_;
+  std::vector<Part> parts_;  // by block
   Moves moves_;
-  static std::vector<int64_t> whole(const BondNumbers& numbers);
-
-  BondNumbers bond_numbers_, bonds_before_;
-  PairPass::Bonds bonds_;
+  std::vector<int64_t> bonds_;  // as they were given
 };
 
 }  // namespace cuboct::emu
