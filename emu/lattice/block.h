@@ -16,19 +16,12 @@
 #include <vector>
 
 #include "emu/lattice/aligned.h"
+#include "emu/lattice/entry.h"
 #include "emu/lattice/kernel_rule.h"
 #include "emu/lattice/slots.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {
-
-// The pairs (group's lane l, particle first + l) for the bits l of `lanes`.
-struct Entry {
-  int32_t first;
-  uint8_t lanes;
-  uint8_t shift;  // index into Particles::shift
-};
-inline constexpr uint8_t kNoShift = 13;
 
 // Structure of arrays over all particles of this process, its ghosts behind them.
 struct Particles {
@@ -70,12 +63,9 @@ struct Found {
   int64_t number;
 };
 
-// Entries by group. A group's entries that may meet in the next few steps stand before its others.
+// Entries by group.
 struct PairList {
-  struct Group {
-    uint32_t begin;
-    uint32_t near, count;  // entries
-  };
+  using Group = EntryGroup;
   std::vector<Group> groups;
   std::vector<Entry, Untouched<Entry>> entries;
 };

@@ -65,6 +65,7 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       throw InputError("a rule of text runs on one rank of the lattice engine", "use --threads")
           .about({"rule.file", "rule"});
     rounds_.emplace(plan.program->program, rule_, lattice_, plan.program->rows.get());
+    if (options_.rule_code == RuleCode::compiled) compile_rounds();
   }
   const std::vector<Kernels> here = kernels_here(rule_);
   const auto named = std::find_if(here.begin(), here.end(), [&](const Kernels& k) {

@@ -16,12 +16,20 @@
 
 namespace cuboct::emu {
 
+// How a rule of text runs its pairs: interpreted, compiled by the host's compiler before the first step, or
+// (automatic) compiled once the run has lasted. No bit depends on it.
+enum class RuleCode { automatic, interpreted, compiled };
+// By its name; InputError for another.
+RuleCode rule_code_of(const std::string& name);
+
 struct LatticeOptions {
   int threads = 0;         // 0: one per core that the process may use, fewer for small scenes
   bool quiescence = true;  // cells at rest among cells at rest are skipped; no bit depends on it
   std::string simd;        // "avx512", "avx2", "128-bit", "portable"; empty: the widest that this machine has
   Ranks* ranks = nullptr;  // who shares the scene; null: nobody. Must outlive the engine
   std::string cut = "bricks";  // how: see cut.h
+  RuleCode rule_code = RuleCode::automatic;
+  std::string code_directory = {};  // of compiled code; empty: cache_directory()
 };
 
 // What a run did so far.

@@ -49,6 +49,8 @@ struct LatticeEngine::Impl {
   // program_step.cpp
   void run_rounds(const Active& active);
   void keep_fields();
+  void compile_rounds();
+  void compile_if_worth();
   [[noreturn]] void fail_as_golden() const;
 
   // lists.cpp
@@ -83,7 +85,9 @@ struct LatticeEngine::Impl {
   Kernels kernels_;
   std::optional<Rounds> rounds_;                    // of a program; else the kernels step the pair law
   std::vector<PaddedArray<double>> fields_before_;  // as the step found them
-  double cutoff_;                                   // cells
+  uint64_t interpreted_ = 0;                        // entries that rounds_ met so far
+  bool may_compile_ = true;
+  double cutoff_;  // cells
   int threads_;
   uint64_t step_;
   uint32_t count_;       // particles of all ranks

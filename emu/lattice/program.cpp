@@ -25,6 +25,11 @@ class LatticeProgram : public EngineProgram {
     app.option("--threads", engine.threads, "Threads; one per core without it").range(1, 4096);
     app.flag("--no-quiescence", no_quiescence_, "Do not skip cells at rest; no bit changes");
     app.option("--simd", engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
+    app.option("--rule-code", rule_code_,
+               "How a rule of text runs: interpreted, compiled before the first step, or automatic: compiled "
+               "once the run has lasted some seconds")
+        .one_of({"automatic", "interpreted", "compiled"})
+        .show_default();
     app.option("--cut", engine.cut, "How ranks share the cells: bricks, or slabs along x, y or z")
         .one_of({"bricks", "x", "y", "z"})
         .show_default();
@@ -32,6 +37,7 @@ class LatticeProgram : public EngineProgram {
 
   bool prepare(ProgramOptions&) override {
     choice_.engine.quiescence = !no_quiescence_;
+    choice_.engine.rule_code = rule_code_of(rule_code_);
     // Blocks of this size go back to the system when they are freed, as a body of millions does.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
     return false;
@@ -48,6 +54,7 @@ class LatticeProgram : public EngineProgram {
  private:
   LatticeChoice choice_;
   bool no_quiescence_ = false;
+  std::string rule_code_ = "automatic";
 };
 
 }  // namespace

@@ -4,9 +4,14 @@
 #include <stdexcept>
 
 #include "emu/lattice/impl.h"
+#include "model/base/error.h"
+#include "model/base/resources.h"
 #include "model/contract/golden.h"
 
 namespace cuboct::emu {
+
+// Entries after which a compiler's two seconds are won back: the interpreter takes some 80 ns for one.
+constexpr uint64_t kWorthCompiling = 50'000'000;
 
 void LatticeEngine::Impl::keep_fields() {
   rounds_->keep_bonds();
@@ -17,8 +22,38 @@ void LatticeEngine::Impl::keep_fields() {
     });
 }
 
+RuleCode rule_code_of(const std::string& name) {
+  if (name == "automatic") return RuleCode::automatic;
+  if (name == "interpreted") return RuleCode::interpreted;
+  if (name == "compiled") return RuleCode::compiled;
+  throw InputError("'" + name + "' is no way to run a rule of text", "automatic, interpreted or compiled");
+}
+
+void LatticeEngine::Impl::compile_rounds() {
+  const std::string directory = options_.code_directory.empty() ? cache_directory() : options_.code_directory;
+  if (directory.empty())
+    throw InputError("neither XDG_CACHE_HOME nor HOME is set: no place to keep a rule's compiled code");
+  rounds_->compile(options_.simd, directory);
+}
+
+// Where there is no compiler, or it is not to be trusted, the rule stays interpreted.
+void LatticeEngine::Impl::compile_if_worth() {
+  if (rounds_->compiled() || !may_compile_ || options_.rule_code != RuleCode::automatic) return;
+  for (const Block& block : blocks_)
+    interpreted_ +=
+        rounds_->program().rounds.size() * (block.inside.entries.size() + block.beside.pairs.entries.size() +
+                                            rounds_->bond_entries(number_of(block)));
+  if (interpreted_ < kWorthCompiling) return;
+  may_compile_ = false;
+  try {
+    compile_rounds();
+  } catch (const InputError&) {
+  }
+}
+
 // No particle moves before every round is done, so a fault finds the state as the step did, but for fields.
 void LatticeEngine::Impl::run_rounds(const Active& active) {
+  compile_if_worth();
   keep_fields();
   std::atomic<bool> fits = true;
   const auto all = [&](const auto& work) {

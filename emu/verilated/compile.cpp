@@ -2,12 +2,7 @@
 #include "emu/verilated/compile.h"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -15,6 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/base/hash.h"
+#include "model/base/host_compiler.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
 
@@ -28,34 +24,6 @@ constexpr const char* kVerilatorFlags = "-O3 -fno-const-bit-op-tree --assert -Wn
 // VL_USER_STOP: the sources say what happens where an assertion of the RTL fails (shim.h).
 constexpr const char* kCompilerFlags =
     "-std=c++17 -fPIC -fno-gnu-unique -w -DVM_COVERAGE=0 -DVM_TRACE=0 -DVM_TIMING=0 -DVL_USER_STOP";
-
-bool succeeds(const std::string& command) {
-  const int status = std::system(command.c_str());
-  return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
-
-// What the tool says of itself. `tool`: words of a shell.
-std::string version_of(const std::string& tool, const std::string& package) {
-  constexpr int kNotFound = 127;  // of a shell
-  std::string text;
-  int status = -1;
-  if (FILE* pipe = popen((tool + " --version 2>&1").c_str(), "r"); pipe != nullptr) {
-    std::array<char, 256> part;
-    while (std::fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
-    status = pclose(pipe);
-    if (status == 0) return text;
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound)
-    throw InputError(fmt::format(
-        "{} is missing: the emitted hardware is compiled with it (Debian package {})", tool, package));
-  throw InputError(fmt::format("'{} --version' fails: the tool does not work", tool));
-}
-
-// As make and CMake have it, CXX may hold words before the compiler ("ccache g++") and behind it.
-std::string compiler() {
-  const char* cxx = std::getenv("CXX");
-  return cxx != nullptr && *cxx != 0 ? cxx : "c++";
-}
 
 // Comments name the plan that a file was made from, and the package counts the lattice's nodes; what the
 // hardware is stands in the other lines.
@@ -82,30 +50,6 @@ uint64_t key_of(const Build& build, const fs::path& dir, const std::string& tool
   return hash.value();
 }
 
-void run_logged(const std::string& what, const std::string& command, const fs::path& dir,
-                const fs::path& log) {
-  const std::string line =
-      fmt::format("cd {} && ({}) >> {} 2>&1", shell_word(dir.string()), command, shell_word(log.string()));
-  if (!succeeds(line)) throw InputError(fmt::format("{} failed: see {}", what, log.string()));
-}
-
-// A directory that goes with its owner.
-struct Scratch {
-  fs::path path;
-  explicit Scratch(const fs::path& name) {
-    std::string pattern = name.string() + "-XXXXXX";
-    if (mkdtemp(pattern.data()) == nullptr)
-      throw InputError(fmt::format("cannot write in {}", name.parent_path().string()));
-    path = pattern;
-  }
-  ~Scratch() {
-    std::error_code error;
-    fs::remove_all(path, error);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-};
-
 // Two units, as most of the compiler's time would go into Verilator's headers: what runs in each cycle, with
 // the sources; and what runs once, as the settling of a new model and the filling of its tables, where the
 // compiler is not to spend time.
@@ -130,14 +74,15 @@ Units units_of(const Build& build, const fs::path& model) {
 }  // namespace
 
 std::string compile(const Build& build, const std::string& directory) {
-  std::string tools = version_of("verilator", "verilator");
-  tools += compiler() + ": " + version_of(compiler(), "g++");
+  constexpr const char* kWhy = "the emitted hardware is compiled with it";
+  std::string tools = version_of("verilator", "verilator", kWhy);
+  tools += host_compiler() + ": " + version_of(host_compiler(), "g++", kWhy);
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw InputError(fmt::format("cannot make the directory {}: {}", directory, error.message()));
   const fs::path home = fs::absolute(directory);
-  const Scratch scratch(home / build.top);
-  const fs::path &dir = scratch.path, rtl = dir / "emitted";
+  const BuildDirectory scratch(home / build.top);
+  const fs::path &dir = scratch.path(), rtl = dir / "emitted";
   build.emit(rtl.string());
   const std::string name = fmt::format("{}-{:016x}", build.top, key_of(build, rtl, tools));
   const fs::path result = home / (name + ".so"), log = home / (name + ".log");
@@ -160,13 +105,13 @@ std::string compile(const Build& build, const std::string& directory) {
   write_text(dir / "each_cycle.cpp", units.each_cycle);
   write_text(dir / "once.cpp", units.once);
   const std::string compiled =
-      fmt::format("{} {}{} -I. -Imodel -I\"$root/include\" -I\"$root/include/vltstd\" {}", compiler(),
+      fmt::format("{} {}{} -I. -Imodel -I\"$root/include\" -I\"$root/include/vltstd\" {}", host_compiler(),
                   kCompilerFlags, arguments, build.compiler_flags);
   run_logged("the C++ compiler",
              fmt::format("root=$(verilator --getenv VERILATOR_ROOT) || exit; {0} -O0 -c once.cpp & once=$!; "
                          "{0} -c each_cycle.cpp; each=$?; wait $once && test $each = 0 && "
                          "{1} -shared -pthread -o library.so each_cycle.o once.o {2}",
-                         compiled, compiler(), build.libraries),
+                         compiled, host_compiler(), build.libraries),
              dir, log);
   fs::rename(dir / "library.so", result);
   fs::remove(log, error);

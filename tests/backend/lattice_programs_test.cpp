@@ -20,10 +20,15 @@ Case as_program(Case c) {
 }
 
 // Threads and quiescence; there is one vector unit, the widest.
-std::vector<emu::LatticeOptions> program_variants() {
+std::vector<emu::LatticeOptions> program_variants(emu::RuleCode code = emu::RuleCode::interpreted) {
   std::vector<emu::LatticeOptions> all;
   for (const int threads : {1, 2, 3, 5})
-    for (const bool quiescence : {false, true}) all.push_back({threads, quiescence, ""});
+    for (const bool quiescence : {false, true})
+      all.push_back({.threads = threads,
+                     .quiescence = quiescence,
+                     .simd = {},
+                     .rule_code = code,
+                     .code_directory = CUBOCT_RULE_CODE});
   return all;
 }
 
@@ -51,19 +56,52 @@ TEST_P(LatticeProgram, EqualsGoldenAtEachStep) {
 INSTANTIATE_TEST_SUITE_P(Cases, LatticeProgram, testing::ValuesIn(case_names()),
                          [](const auto& p) { return p.param; });
 
-TEST(LatticeProgramRandom, EqualsGolden) {
+void compare_random(emu::RuleCode code) {
   Count count, wide;
-  const std::vector<emu::LatticeOptions> all = program_variants();
+  const std::vector<emu::LatticeOptions> all = program_variants(code);
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     const Case c = as_program(random_case(seed));
     if (!vectors_hold(c, wide)) continue;
     compare(c, all[seed % all.size()], count);
-    if (HasFatalFailure()) return;
+    if (testing::Test::HasFatalFailure()) return;
   }
   EXPECT_LT(wide.vectors, 50u);
   EXPECT_GT(count.updates, 20000u);
   EXPECT_GT(count.moves, 100u);
   EXPECT_GT(count.lists.quiet_node_steps, 0u);
+}
+
+TEST(LatticeProgramRandom, EqualsGolden) { compare_random(emu::RuleCode::interpreted); }
+
+// Of the full tier: a compiler takes a second for each shape of a rule.
+TEST(LatticeProgramCompiled, EqualsGoldenOnEachCase) {
+  for (const std::string& name : case_names()) {
+    const Case c = as_program(make_case(name));
+    Count count;
+    if (!vectors_hold(c, count)) continue;
+    compare(c, program_variants(emu::RuleCode::compiled)[5], count);
+    EXPECT_GT(count.updates, 0u);
+  }
+}
+TEST(LatticeProgramCompiled, EqualsGoldenAtRandom) { compare_random(emu::RuleCode::compiled); }
+
+TEST(LatticeProgramCompiled, EqualsGoldenOnEachVectorUnit) {
+  const Case c = as_program(make_case("two_materials"));
+  for (const char* simd : {"avx512", "avx2", "128-bit", "portable"}) {
+    Count count;
+    try {
+      compare(c,
+              {.threads = 2,
+               .quiescence = true,
+               .simd = simd,
+               .rule_code = emu::RuleCode::compiled,
+               .code_directory = CUBOCT_RULE_CODE},
+              count);
+    } catch (const InputError&) {
+      continue;  // not on this machine
+    }
+    EXPECT_GT(count.updates, 0u) << simd;
+  }
 }
 
 TEST(LatticeProgramFaults, EachArisesAsInGolden) {
@@ -73,6 +111,8 @@ TEST(LatticeProgramFaults, EachArisesAsInGolden) {
     const Case c = as_program(fault_case(fault));
     if (!vectors_hold(c, wide)) continue;
     for (const emu::LatticeOptions& v : program_variants()) compare(c, v, count), ++expected;
+    if (fault == Fault::sum || fault == Fault::velocity)
+      compare(c, program_variants(emu::RuleCode::compiled)[3], count), ++expected;
   }
   EXPECT_GT(expected, 8 * all_faults().size() / 2);
   EXPECT_EQ(count.faults, expected);

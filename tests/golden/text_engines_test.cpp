@@ -36,8 +36,10 @@ TEST_P(TextEngines, LatticeHasGoldensBitsAndGoesOnFromItsCheckpoint) {
   head.engine = golden->memory();
   write_checkpoint(path, head, *golden, plan.rule.pd);
   golden->advance(GetParam().steps - half, &expected);
-  for (const int threads : {1, 3}) {
-    const emu::LatticeChoice choice{.engine = {threads, true, ""}};
+  for (const emu::RuleCode code : {emu::RuleCode::interpreted, emu::RuleCode::compiled}) {
+    const int threads = code == emu::RuleCode::compiled ? 3 : 1;
+    const emu::LatticeChoice choice{
+        .engine = {.threads = threads, .simd = {}, .rule_code = code, .code_directory = CUBOCT_RULE_CODE}};
     const EngineKind kind = emu::lattice_kind(scene, plan, choice);
     const auto lattice = kind.make(nullptr, false);
     std::vector<uint64_t> found{lattice->hash()};

@@ -7,21 +7,41 @@
 #include <cstdint>
 #include <vector>
 
+#include "emu/lattice/rounds/pair_parts.h"
 #include "emu/lattice/snapshot.h"
 #include "model/graph/bond_rows.h"
 
 namespace cuboct::emu {
 
+// The cells across which bonds meet.
+struct BondSpace {
+  const graph::BondRows* rows = nullptr;  // null: the program has no bonds
+  double cell = 0;                        // 2^P
+  std::array<double, 3> period{};         // visible units; 0: the box does not repeat
+
+  // `apart` becomes that of the partner's image in the 27 cells around own. False: there is none.
+  bool meets(const std::array<double, 3>& own, std::array<double, 3>& apart) const;
+};
+
 struct BondList {
-  PairList pairs;              // a group for each of the block
-  std::vector<uint64_t> bond;  // [slot]: index into the rows; kNoBond where the lane is not one of the entry
+  // A group for each of the block. Bonds inside the block whose terms are made once for both ends, at the
+  // lower one; and those with one end here. Both stand in one array of entries.
+  std::vector<Entry> entries;
+  std::vector<EntryGroup> both, own;
+  std::vector<uint64_t> bond, twin;  // [slot]: index into the rows, from either end; kNoBond: there is none
   static constexpr uint64_t kNoBond = ~uint64_t{0};
   PaddedArray<uint32_t> kind;                        // [slot], of the rows
   std::vector<PaddedArray<double>> numbers, before;  // [number][slot]: now, and when the step began
   static size_t slot(size_t entry, uint32_t lane) { return entry * kGroup + lane; }
 
-  void build(const Block& block, const Particles& particles, const Index& index, const graph::BondRows& rows,
-             const std::array<double, 3>& period, int number_count);
+  void build(const Block& block, const Particles& particles, const Index& index, const BondSpace& space,
+             bool once, int number_count);
+  // Whether the bond counts no more, for ever.
+  bool is_broken(const graph::FixedProgram& program, const BondSpace& space, size_t slot) const;
+
+ private:
+  std::vector<EntryGroup>& groups_of(Ends ends) { return ends == Ends::both ? both : own; }
+  void add_kinds(const graph::BondRows& rows);
 };
 
 }  // namespace cuboct::emu

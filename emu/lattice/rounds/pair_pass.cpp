@@ -6,9 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "model/contract/program_run.h"
-#include "model/graph/parity.h"
-
 namespace cuboct::emu {
 namespace {
 
@@ -16,34 +13,6 @@ using graph::Graph;
 using graph::Node;
 using graph::Op;
 using graph::Source;
-
-bool is_input(const Graph& graph, int n) { return graph.nodes[static_cast<size_t>(n)].op == Op::input; }
-
-std::vector<int> all_terms(const graph::Round& round) {
-  std::vector<int> terms;
-  for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
-  return terms;
-}
-
-// All that a pair's graph is run for.
-std::vector<int> all_outputs(const graph::Round& round) {
-  std::vector<int> outputs = all_terms(round);
-  for (const graph::Write& write : round.bond_writes) outputs.push_back(write.node);
-  return outputs;
-}
-
-std::vector<int> inputs_of(const Graph& graph, const std::vector<int>& nodes) {
-  std::vector<int> inputs;
-  std::ranges::copy_if(nodes, std::back_inserter(inputs), [&](int n) { return is_input(graph, n); });
-  return inputs;
-}
-
-// What the terms need beside these.
-std::vector<int> beyond(const Graph& graph, const std::vector<int>& terms, const std::vector<int>& early) {
-  std::vector<int> late;
-  std::ranges::set_difference(needed_by(graph, terms), early, std::back_inserter(late));
-  return late;
-}
 
 // Those of `early`, constants apart, that `late` or the outputs read.
 std::vector<int> read_of(const Graph& graph, const std::vector<int>& early, const std::vector<int>& late,
@@ -60,38 +29,12 @@ std::vector<int> read_of(const Graph& graph, const std::vector<int>& early, cons
   return kept;
 }
 
-// What `when` needs, and the differences of positions: a row is followed once.
-std::vector<int> early_nodes(const graph::Round& round, const std::vector<int>& terms) {
-  std::vector<int> roots{round.when};
-  for (const int n : needed_by(round.pair, terms))
-    if (const Node& node = round.pair.nodes[static_cast<size_t>(n)];
-        node.op == Op::input && node.source == Source::apart)
-      roots.push_back(n);
-  return needed_by(round.pair, roots);
-}
-
-// By term: of the other end.
-std::vector<double> signs_of(const graph::Round& round) {
-  const std::vector<graph::Parity> parity = parities_of(round.pair);
-  std::vector<double> signs;
-  for (const int term : all_terms(round)) signs.push_back(is_odd(parity[static_cast<size_t>(term)]) ? -1 : 1);
-  return signs;
-}
-
 std::vector<int> with(std::vector<int> nodes, int node) {
   nodes.push_back(node);
   return nodes;
 }
 
 }  // namespace
-
-bool PairPass::is_mutual(const graph::Round& round) {
-  const std::vector<graph::Parity> parity = parities_of(round.pair);
-  const auto mutual = [&](int node) {
-    return is_odd(parity[static_cast<size_t>(node)]) || is_even(parity[static_cast<size_t>(node)]);
-  };
-  return mutual(round.when) && std::ranges::all_of(all_terms(round), mutual);
-}
 
 PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round, const BondSpace& space,
                    bool once)
@@ -101,14 +44,11 @@ PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round
       space_(space),
       once_(once),
       when_(round.when),
-      terms_(all_terms(round)),
-      signs_(signs_of(round)),
-      early_(early_nodes(round, all_outputs(round))),
-      late_(beyond(graph_, all_outputs(round), early_)),
-      early_inputs_(inputs_of(graph_, early_)),
-      late_inputs_(inputs_of(graph_, late_)),
-      kept_(read_of(graph_, early_, late_, all_outputs(round))),
-      block_(graph_, {early_, late_}, with(all_outputs(round), when_)),
+      parts_(round),
+      early_inputs_(inputs_of(graph_, parts_.early)),
+      late_inputs_(inputs_of(graph_, parts_.late)),
+      kept_(read_of(graph_, parts_.early, parts_.late, parts_.outputs)),
+      block_(graph_, {parts_.early, parts_.late}, with(parts_.outputs, when_)),
       own_(VectorBlock::kRoom),
       other_(VectorBlock::kRoom),
       chosen_(VectorBlock::kRoom),
@@ -184,19 +124,21 @@ void PairPass::turn(size_t from) {
 }
 
 void PairPass::meet_bonds(const Scope& scope, BondList& bonds, Sums& sums) {
-  for (uint32_t k = 0; k < scope.block.groups(); ++k) {
-    const uint32_t base = scope.block.begin + k * kGroup;
-    if (scope.active.awake != nullptr && !any_flag(scope.active.awake, scope.particles, base / kGroup))
-      continue;
-    const PairList::Group& group = bonds.pairs.groups[k];
-    for (uint32_t e = group.begin; e < group.begin + group.count; ++e) {
-      if (count_ + kGroup > VectorBlock::kRoom) flush(scope, Ends::own, bonds, sums);
-      const Entry& entry = bonds.pairs.entries[e];
-      for (uint32_t l = 0; l < kGroup; ++l)
-        if (entry.lanes >> l & 1) meet_bond(scope, base, entry, l, BondList::slot(e, l), bonds);
+  for (const Ends ends : {Ends::both, Ends::own}) {
+    const std::vector<EntryGroup>& groups = ends == Ends::both ? bonds.both : bonds.own;
+    for (uint32_t k = 0; k < scope.block.groups(); ++k) {
+      const uint32_t base = scope.block.begin + k * kGroup;
+      if (scope.active.near != nullptr && !any_flag(scope.active.near, scope.particles, base / kGroup))
+        continue;
+      for (uint32_t e = groups[k].begin; e < groups[k].begin + groups[k].count; ++e) {
+        if (count_ + kGroup > VectorBlock::kRoom) flush(scope, ends, bonds, sums);
+        const Entry& entry = bonds.entries[e];
+        for (uint32_t l = 0; l < kGroup; ++l)
+          if (entry.lanes >> l & 1) meet_bond(scope, base, entry, l, BondList::slot(e, l), bonds);
+      }
     }
+    flush(scope, ends, bonds, sums);
   }
-  flush(scope, Ends::own, bonds, sums);
 }
 
 // Where both are within a cell's edge, their cells are neighbours.
@@ -210,8 +152,8 @@ inline void PairPass::meet_bond(const Scope& scope, uint32_t base, const Entry& 
     apart[a] = particles.x[a][other] - particles.x[a][own] + particles.shift[entry.shift][a];
     within = within && std::abs(apart[a]) < space_.cell;
   }
-  if (!within && !is_met({particles.x[0][own], particles.x[1][own], particles.x[2][own]}, apart)) {
-    fits_ = fits_ && is_broken(slot, bonds);
+  if (!within && !space_.meets({particles.x[0][own], particles.x[1][own], particles.x[2][own]}, apart)) {
+    fits_ = fits_ && bonds.is_broken(program_, space_, slot);
     return;
   }
   own_[count_] = own;
@@ -221,24 +163,6 @@ inline void PairPass::meet_bond(const Scope& scope, uint32_t base, const Entry& 
   ++count_;
 }
 
-// `apart` becomes that of the partner's image in the 27 cells around own. False: there is none.
-bool PairPass::is_met(const std::array<double, 3>& own, std::array<double, 3>& apart) const {
-  for (size_t a = 0; a < 3; ++a) {
-    if (space_.period[a] > 0) apart[a] -= std::round(apart[a] / space_.period[a]) * space_.period[a];
-    const double cells = std::floor((own[a] + apart[a]) / space_.cell) - std::floor(own[a] / space_.cell);
-    if (std::abs(cells) > 1) return false;
-  }
-  return true;
-}
-
-// Rare: golden's own.
-bool PairPass::is_broken(size_t slot, const BondList& bonds) const {
-  std::vector<int64_t> numbers;
-  for (const auto& values : bonds.numbers) numbers.push_back(static_cast<int64_t>(values[slot]));
-  const auto constants = space_.rows->constants.data() + bonds.kind[slot] * program_.bond_constants.size();
-  return cuboct::is_broken(program_, {.bond = numbers.data(), .bond_constants = constants});
-}
-
 void PairPass::write_bonds(const Scope& scope, size_t lanes, BondList& bonds) {
   for (const graph::Write& write : round_.bond_writes) {
     const double* value = block_.values(write.node);
@@ -246,7 +170,7 @@ void PairPass::write_bonds(const Scope& scope, size_t lanes, BondList& bonds) {
         bonds.numbers[static_cast<size_t>(program_.bond_place(write.field) + write.component)];
     for (size_t k = 0; k < lanes; ++k) {
       if (scope.active.changed != nullptr && to[slot_[k]] != value[k])
-        scope.active.mark(scope.particles.cell[own_[k]]);
+        for (const uint32_t end : {own_[k], other_[k]}) scope.active.mark(scope.particles.cell[end]);
       to[slot_[k]] = value[k];
     }
   }
@@ -369,12 +293,12 @@ void PairPass::fill(const Scope& scope, const std::vector<int>& inputs, size_t l
 // Whole numbers below 2^51 in any order.
 void PairPass::add(const Scope& scope, Ends ends, size_t lanes, Sums& sums) {
   const uint32_t begin = scope.block.begin;
-  for (size_t t = 0; t < terms_.size(); ++t) {
-    const double* term = block_.values(terms_[t]);
+  for (size_t t = 0; t < parts_.terms.size(); ++t) {
+    const double* term = block_.values(parts_.terms[t]);
     double* sum = sums[t].data();
     for (size_t k = 0; k < lanes; ++k) sum[own_[k] - begin] += term[k];
     if (ends == Ends::own) continue;
-    for (size_t k = 0; k < lanes; ++k) sum[other_[k] - begin] += signs_[t] * term[k];
+    for (size_t k = 0; k < lanes; ++k) sum[other_[k] - begin] += parts_.signs[t] * term[k];
   }
 }
 

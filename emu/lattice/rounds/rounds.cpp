@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emu/lattice/code/proof.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {
@@ -24,9 +25,7 @@ void check_doubles(const graph::Graph& graph, const std::string& what) {
 
 Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule, const Lattice& lattice,
                const graph::BondRows* rows)
-    : program_(program),
-      rule_(rule),
-      once_(rows == nullptr && std::ranges::all_of(program.rounds, PairPass::is_mutual)) {
+    : program_(program), rule_(rule), once_(std::ranges::all_of(program.rounds, is_mutual)) {
   if (rows != nullptr) {
     // In a ring of three cells all are neighbours, and a partner is met two cells away.
     if (std::ranges::count(lattice.period(), 3) > 0)
@@ -79,7 +78,7 @@ void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
 void Rounds::list_bonds(size_t b, const Block& block, const Particles& particles, const Index& index) {
   BondList& list = parts_[b].bonds;
   const auto numbers = static_cast<size_t>(program_.bond_numbers());
-  list.build(block, particles, index, *space_.rows, space_.period, program_.bond_numbers());
+  list.build(block, particles, index, space_, once_, program_.bond_numbers());
   for (size_t slot = 0; slot < list.bond.size(); ++slot)
     for (size_t k = 0; k < numbers; ++k)
       if (list.bond[slot] != BondList::kNoBond)
@@ -91,9 +90,10 @@ std::vector<int64_t> Rounds::whole(std::vector<PaddedArray<double>> BondList::*v
   const auto numbers = static_cast<size_t>(program_.bond_numbers());
   for (const Part& part : parts_)
     for (size_t slot = 0; slot < part.bonds.bond.size(); ++slot)
-      for (size_t k = 0; k < numbers; ++k)
-        if (const uint64_t bond = part.bonds.bond[slot]; bond != BondList::kNoBond)
-          bonds[bond * numbers + k] = static_cast<int64_t>((part.bonds.*values)[k][slot]);
+      for (const uint64_t bond : {part.bonds.bond[slot], part.bonds.twin[slot]})
+        for (size_t k = 0; k < numbers; ++k)
+          if (bond != BondList::kNoBond)
+            bonds[bond * numbers + k] = static_cast<int64_t>((part.bonds.*values)[k][slot]);
   return bonds;
 }
 
@@ -103,7 +103,20 @@ void Rounds::keep_bonds() {
       std::copy_n(part.bonds.numbers[k].data(), part.bonds.numbers[k].size(), part.bonds.before[k].data());
 }
 
+void Rounds::compile(const std::string& simd, const std::string& directory) {
+  auto library = std::make_unique<CodeLibrary>(program_, once_, simd, directory);
+  std::vector<CodePass> code;
+  for (size_t k = 0; k < program_.rounds.size(); ++k) {
+    code.emplace_back(*library, program_, space_, k, once_);
+    PairPass pass(program_, program_.rounds[k], space_, once_);
+    prove(code.back(), pass, program_, program_.rounds[k], space_, once_);
+  }
+  library_ = std::move(library);
+  code_ = std::move(code);
+}
+
 bool Rounds::meet(size_t k, size_t b, const Scope& scope) {
+  if (compiled()) return code_[k].run(scope, parts_[b].bonds, parts_[b].sums[k]);
   return parts_[b].pairs[k]->run(scope, parts_[b].bonds, parts_[b].sums[k]);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "emu/lattice/code/code_pass.h"
 #include "emu/lattice/rounds/finish_pass.h"
 #include "emu/lattice/rounds/pair_pass.h"
 
@@ -30,8 +31,13 @@ class Rounds {
   void keep_bonds();
   std::vector<int64_t> bonds_before() const { return whole(&BondList::before); }
 
+  // Runs the pairs by code of the host's compiler from now on (CodeLibrary), once it has proven itself.
+  void compile(const std::string& simd, const std::string& directory);
+  bool compiled() const { return library_ != nullptr; }
+
   // For particles stored in these blocks from now on, at places below `room`.
   void cut(const std::vector<Block>& blocks, size_t room);
+  size_t bond_entries(size_t b) const { return parts_[b].bonds.entries.size(); }
   // Of a bonded program, once.
   void list_bonds(size_t b, const Block& block, const Particles& particles, const Index& index);
 
@@ -59,7 +65,9 @@ class Rounds {
   BondSpace space_;
   std::vector<Part> parts_;  // by block
   Moves moves_;
-  std::vector<int64_t> bonds_;  // as they were given
+  std::vector<int64_t> bonds_;            // as they were given
+  std::unique_ptr<CodeLibrary> library_;  // null: pairs are interpreted
+  std::vector<CodePass> code_;            // by round
 };
 
 }  // namespace cuboct::emu

@@ -8,7 +8,6 @@
 #include "model/graph/registers.h"
 
 namespace cuboct::emu {
-namespace {
 
 using graph::Node;
 using graph::Op;
@@ -31,8 +30,6 @@ VectorTable vector_table(const FixedTable& table) {
   v.t_unit = std::ldexp(1.0, -below_t);
   return v;
 }
-
-}  // namespace
 
 VectorBlock::VectorBlock(const graph::Graph& graph, const std::vector<std::vector<int>>& parts,
                          const std::vector<int>& outputs)

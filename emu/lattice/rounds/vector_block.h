@@ -28,6 +28,8 @@ struct VectorTable {
   double t_unit = 1;  // 2^-k
 };
 
+VectorTable vector_table(const FixedTable& table);
+
 // An operation, ready to run.
 struct VectorStep {
   graph::Op op = graph::Op::constant;

@@ -1,0 +1,10 @@
+# cmake -D OUT=file.cpp -D ROOT=source directory -P embed.cmake: the headers that compiled code of rules includes, as a C++ table.
+set(text "// SPDX-License-Identifier: MIT\n#include \"emu/lattice/code/sources.h\"\n\nnamespace cuboct::emu {\n\n")
+string(APPEND text "const std::vector<std::pair<std::string, std::string>>& code_sources() {\n")
+string(APPEND text "  static const std::vector<std::pair<std::string, std::string>> sources{\n")
+foreach(source emu/lattice/code/job.h emu/lattice/code/lanes.h emu/lattice/entry.h model/base/fixed_math.h model/base/hash.h)
+  file(READ ${ROOT}/${source} body)
+  string(APPEND text "{\"${source}\", R\"code~(${body})code~\"},\n")
+endforeach()
+string(APPEND text "};\n  return sources;\n}\n\n}  // namespace cuboct::emu\n")
+file(WRITE ${OUT} "${text}")

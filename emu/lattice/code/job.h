@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// What compiled code of a rule is given: plain data. The code includes this file too.
+//
+// A rule's shape (which operation takes what) is code. Its numbers (constants, roundings, tables) are data,
+// so that rules of one shape share their code.
+#pragma once
+
+#include <cstdint>
+
+#include "emu/lattice/entry.h"
+
+namespace cuboct::emu {
+
+// A table as vectors read it (VectorTable).
+struct CodeTable {
+  const uint64_t* words;
+  const double* c2;  // of parabolas
+  int64_t index_shift, index_mask, index_bits, index_base;
+  int64_t t_mask;
+  double t_unit;
+  double factor;  // of a rounding by the bits of t
+};
+
+// Arrays are by index of a particle unless said otherwise, and readable a group beyond either end.
+struct Job {
+  const double* x[3];
+  const double* v[3];
+  const double* const* fields;  // by number
+  const uint8_t* type;
+  const uint32_t* id;        // null: the index is the id
+  const double (*shift)[3];  // Particles::shift
+  uint32_t begin;            // the block's first particle
+  uint32_t end;
+  double* const* sums;  // by term, [index - begin]
+
+  const Entry* entries;
+  const EntryGroup* groups;
+  const uint32_t* group_of;  // the block's groups that have entries; null: all
+  uint32_t group_count;
+  const uint8_t* wanted;  // by group of the block; null: all
+
+  const double* constants;
+  const CodeTable* tables;
+  const double* const* type_constants;  // [constant][type]
+  const double* const* pair_constants;  // [constant][own * types + other]
+  int64_t types;
+  double step;
+
+  // Of a bonded program. A slot is entry * kGroup + lane.
+  double* const* bonds;          // [number][slot]
+  const uint32_t* kind;          // [slot]
+  const double* bond_constants;  // [kind * bond_constant_count + constant]
+  int64_t bond_constant_count;
+  double cell;  // ends nearer than that along each axis are in neighbouring cells
+  void* owner;
+  // Of ends that are not so near: whether they meet. Then `apart` becomes that of their images. Else *fits
+  // becomes false if the bond counts.
+  bool (*meet)(void* owner, uint32_t own, uint64_t slot, double apart[3], bool* fits);
+  // A bond of these two has another number; null: nobody asks.
+  void (*changed)(void* owner, uint32_t own, uint32_t other);
+};
+
+// False where something does not fit. The particles' ends of each entry: the terms go to the sums of the
+// lower one, of the other one, or of both.
+using MeetCode = bool (*)(const Job&);
+
+}  // namespace cuboct::emu

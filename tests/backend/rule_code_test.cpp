@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Compiled code of a rule: what it is kept by, and what happens where the compiler is not to be had or not to
+// be trusted.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "emu/lattice/engine.h"
+#include "model/base/error.h"
+#include "model/base/process.h"
+#include "model/contract/pair_program.h"
+#include "model/program/integer_program.h"
+#include "tests/support/cases.h"
+
+namespace cuboct::test {
+namespace {
+
+class RuleCodeTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const char* before = std::getenv("CXX");
+    before_ = before != nullptr ? before : "";
+    auto program = std::make_shared<IntegerProgram>();
+    program->program = pair_program(case_.setup.plan.rule, case_.setup.plan.arch.capacity);
+    case_.setup.plan.program = std::move(program);
+  }
+  void TearDown() override { before_.empty() ? unsetenv("CXX") : setenv("CXX", before_.c_str(), 1); }
+
+  // A compiler that does this first.
+  void use_compiler_after(const std::string& line) {
+    const std::string path = scratch_.path("compiler");
+    std::ofstream(path) << "#!/bin/sh\n" << line << "\nexec c++ \"$@\"\n";
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    setenv("CXX", path.c_str(), 1);
+  }
+  std::string refusal() {
+    try {
+      engine();
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return {};
+  }
+  void engine() {
+    emu::LatticeEngine engine(case_.setup.plan, 0,
+                              static_cast<uint32_t>(case_.setup.initial.particles.size()),
+                              [&](uint32_t k) { return case_.setup.initial.particles[k]; },
+                              {.threads = 1,
+                               .simd = {},
+                               .rule_code = emu::RuleCode::compiled,
+                               .code_directory = scratch_.path("code")});
+    engine.step();
+  }
+  size_t files() const {
+    size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(scratch_.path("code")))
+      count += entry.path().extension() == ".so";
+    return count;
+  }
+
+  Scratch scratch_;
+  Case case_ = make_case("two_materials");
+  std::string before_;
+};
+
+TEST_F(RuleCodeTest, IsCompiledOnce) {
+  use_compiler_after("test \"$1\" = --version || echo once >> " + scratch_.path("calls"));
+  engine();
+  engine();
+  std::ifstream calls(scratch_.path("calls"));
+  std::string line;
+  size_t count = 0;
+  while (std::getline(calls, line)) ++count;
+  EXPECT_EQ(count, 1u);
+  EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(RuleCodeTest, ACompilerThatMakesOtherNumbersIsNotTrusted) {
+  use_compiler_after("test \"$1\" = --version || sed -i 's/sum1 + term1/sum1 - term1/' rule.cpp");
+  EXPECT_NE(refusal().find("makes other numbers of round"), std::string::npos) << refusal();
+}
+
+TEST_F(RuleCodeTest, ACompilerThatFailsIsToldWithItsLog) {
+  use_compiler_after("test \"$1\" = --version || { echo no such luck >&2; exit 1; }");
+  const std::string told = refusal();
+  ASSERT_NE(told.find("the C++ compiler failed: see "), std::string::npos) << told;
+  std::ifstream log(told.substr(told.find("see ") + 4));
+  std::string line;
+  std::getline(log, line);
+  EXPECT_EQ(line, "no such luck");
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(RuleCodeTest, WithoutACompilerARuleIsInterpreted) {
+  setenv("CXX", "no-such-compiler", 1);
+  EXPECT_EQ(refusal(), "no-such-compiler is missing: a rule's code is compiled with it (Debian package g++)");
+}
+
+}  // namespace
+}  // namespace cuboct::test
