@@ -5,16 +5,12 @@
 #include <vector>
 
 #include "emu/lattice/kernel.h"
+#include "emu/lattice/rounds/move.h"
 #include "emu/lattice/rounds/pair_pass.h"
 #include "emu/lattice/rounds/vector_block.h"
 #include "model/graph/program.h"
 
 namespace cuboct::emu {
-
-// By axis and index: what the last finish makes, before anything moves.
-struct Moves {
-  std::array<PaddedArray<double>, 3> v, u, drift;  // u: empty where no particle has a displacement
-};
 
 class FinishPass {
  public:

@@ -69,6 +69,7 @@ void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
           part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
     }
   }
+  moves_.axes = static_cast<int>(program_.motion.v.size());
   for (auto* arrays : {&moves_.v, &moves_.drift})
     for (auto& array : *arrays) array = PaddedArray<double>(room);
   if (!program_.motion.u.empty())
@@ -126,40 +127,7 @@ bool Rounds::finish(size_t k, size_t b, const Block& block, Particles& particles
 }
 
 void Rounds::move(Block& block, Particles& particles, const Active& active) {
-  for (uint32_t p = block.begin; p < block.end; ++p) {
-    if (active.awake != nullptr && active.awake[particles.cell[p]] == 0) continue;
-    Crossing crossing{p, {}};
-    double speed2 = 0;
-    if (move(particles, p, crossing, speed2) && active.changed != nullptr) active.mark(particles.cell[p]);
-    block.fastest2 = std::max(block.fastest2, speed2);
-    if (crossing.away != std::array<int8_t, 3>{}) block.crossings.push_back(crossing);
-  }
-}
-
-// Whether something changed.
-bool Rounds::move(Particles& particles, uint32_t p, Crossing& crossing, double& speed2) const {
-  bool changed = false;
-  for (size_t a = 0; a < program_.motion.v.size(); ++a) {
-    const double before = particles.x[a][p], v = moves_.v[a][p];
-    // The drift is exact: what the residue and the drift make together of visible units goes to x.
-    const double exact = particles.residue[a][p] + moves_.drift[a][p];
-    const double whole = std::floor(exact * rule_.inverse_guard);
-    const double after = before + whole;
-    const auto residue = static_cast<int32_t>(exact - whole * rule_.guard);
-    changed |= after != before || residue != particles.residue[a][p] || v != particles.v[a][p];
-    crossing.away[a] =
-        static_cast<int8_t>(std::floor(after * rule_.inverse_cell) - std::floor(before * rule_.inverse_cell));
-    particles.x[a][p] = after;
-    particles.residue[a][p] = residue;
-    particles.v[a][p] = v;
-    if (particles.u[0].size() > 0) {
-      const double u = program_.motion.u.empty() ? 0 : moves_.u[a][p];
-      changed |= particles.u[a][p] != u;
-      particles.u[a][p] = u;
-    }
-    speed2 += v * v;
-  }
-  return changed;
+  move_block(rule_, moves_, active, particles, block);
 }
 
 }  // namespace cuboct::emu

@@ -56,7 +56,6 @@ class Rounds {
     std::vector<Sums> sums;
     BondList bonds;
   };
-  bool move(Particles& particles, uint32_t p, Crossing& crossing, double& speed2) const;
   std::vector<int64_t> whole(std::vector<PaddedArray<double>> BondList::*numbers) const;
 
   const graph::FixedProgram& program_;
