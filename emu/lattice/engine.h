@@ -42,6 +42,7 @@ struct LatticeCounters {
   uint64_t node_steps = 0;        // cells times steps
   uint64_t quiet_node_steps = 0;  // of those, cells whose particles and neighbours did not change in the step
                                   // before: their clock could stand still (quiescence on)
+  uint64_t compiled_steps = 0;    // of a rule of text: taken by compiled code
 };
 
 // What a program keeps of particles, by id, and of bonds, in the order of its rows.

@@ -54,6 +54,7 @@ void LatticeEngine::Impl::compile_if_worth() {
 // No particle moves before every round is done, so a fault finds the state as the step did, but for fields.
 void LatticeEngine::Impl::run_rounds(const Active& active) {
   compile_if_worth();
+  counters_.compiled_steps += rounds_->compiled();
   keep_fields();
   std::atomic<bool> fits = true;
   const auto all = [&](const auto& work) {

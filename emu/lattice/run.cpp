@@ -170,6 +170,7 @@ class IntegerRunner : public IntegerEngine {
     return {{"list_builds", static_cast<double>(counts.list_builds)},
             {"node_steps", static_cast<double>(counts.node_steps)},
             {"quiet_node_steps", static_cast<double>(counts.quiet_node_steps)},
+            {"compiled_steps", static_cast<double>(counts.compiled_steps)},
             {"threads", engine_.threads()}};
   }
 

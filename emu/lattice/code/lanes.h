@@ -6,7 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#if defined(__x86_64__)
+// GCC takes two thirds of its time for this header; its own names do without.
+#if defined(__x86_64__) && defined(__clang__)
 #include <immintrin.h>
 #endif
 
@@ -18,9 +19,26 @@ namespace {
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 constexpr int kLanes = 8;
+#define CUBOCT_512
+#if defined(__clang__)
+#define CUBOCT_512_ANY(a) _mm512_movepi64_mask(reinterpret_cast<__m512i>(a))
+#define CUBOCT_512_FMA(a, b, c) reinterpret_cast<V>(_mm512_fmadd_pd(a, b, c))
+#define CUBOCT_512_FLOOR(a) reinterpret_cast<V>(_mm512_roundscale_pd(a, 9))
+#else
+#define CUBOCT_512_ANY(a) \
+  __builtin_ia32_cvtq2mask512(reinterpret_cast<long long __attribute__((vector_size(64)))>(a))
+#define CUBOCT_512_FMA(a, b, c) __builtin_ia32_vfmaddpd512_mask(a, b, c, -1, 4)
+#define CUBOCT_512_FLOOR(a) __builtin_ia32_rndscalepd_mask(a, 9, a, -1, 4)
+#endif
 #define CUBOCT_EACH(of) of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)
 #elif defined(__AVX2__) && defined(__FMA__)
 constexpr int kLanes = 4;
+#define CUBOCT_256
+#if defined(__clang__)
+#define CUBOCT_256_FMA(a, b, c) reinterpret_cast<V>(_mm256_fmadd_pd(a, b, c))
+#else
+#define CUBOCT_256_FMA(a, b, c) __builtin_ia32_vfmaddpd256(a, b, c)
+#endif
 #define CUBOCT_EACH(of) of(0), of(1), of(2), of(3)
 #else
 constexpr int kLanes = 2;
@@ -44,15 +62,15 @@ inline V value_of(W truth) { return reinterpret_cast<V>(truth & reinterpret_cast
 inline W truth_of(V a) { return a != V{}; }
 
 inline bool any(W truth) {
-#if defined(__AVX512F__)
-  if constexpr (kLanes == 8) return _mm512_movepi64_mask(reinterpret_cast<__m512i>(truth)) != 0;
-#endif
-#if defined(__AVX2__)
-  if constexpr (kLanes == 4) return _mm256_movemask_pd(reinterpret_cast<__m256d>(truth)) != 0;
-#endif
+#if defined(CUBOCT_512)
+  return CUBOCT_512_ANY(truth) != 0;
+#elif defined(CUBOCT_256)
+  return __builtin_ia32_movmskpd256(reinterpret_cast<V>(truth)) != 0;
+#else
   int64_t all = 0;
   for (int l = 0; l < kLanes; ++l) all |= truth[l];
   return all != 0;
+#endif
 }
 
 // Lane l is true where bit l is set.
@@ -64,26 +82,25 @@ inline W lanes_of(uint32_t bits) {
 
 // a b + c, rounded once.
 inline V fused(V a, V b, V c) {
-#if defined(__AVX512F__)
-  if constexpr (kLanes == 8) return reinterpret_cast<V>(_mm512_fmadd_pd(a, b, c));
-#endif
-#if defined(__FMA__)
-  if constexpr (kLanes == 4) return reinterpret_cast<V>(_mm256_fmadd_pd(a, b, c));
-#endif
+#if defined(CUBOCT_512)
+  return CUBOCT_512_FMA(a, b, c);
+#elif defined(CUBOCT_256)
+  return CUBOCT_256_FMA(a, b, c);
+#else
 #define CUBOCT_FMA(l) __builtin_fma(a[l], b[l], c[l])
   return V{CUBOCT_EACH(CUBOCT_FMA)};
+#endif
 }
 
 inline V floor_of(V a) {
-#if defined(__AVX512F__)
-  if constexpr (kLanes == 8)
-    return reinterpret_cast<V>(_mm512_roundscale_pd(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
-#endif
-#if defined(__AVX2__)
-  if constexpr (kLanes == 4) return reinterpret_cast<V>(_mm256_floor_pd(a));
-#endif
+#if defined(CUBOCT_512)
+  return CUBOCT_512_FLOOR(a);
+#elif defined(CUBOCT_256)
+  return __builtin_ia32_roundpd256(a, 9);
+#else
 #define CUBOCT_FLOOR(l) __builtin_floor(a[l])
   return V{CUBOCT_EACH(CUBOCT_FLOOR)};
+#endif
 }
 
 // round_odd of a whole number, for the factor of its shift.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "emu/lattice/code/proof.h"
 
-#include <cmath>
+#include <algorithm>
 #include <random>
 
 #include "model/base/error.h"
@@ -32,12 +32,19 @@ class RandomPairs {
   int64_t whole(int64_t low, int64_t high) {
     return std::uniform_int_distribution<int64_t>(low, high)(random_);
   }
-  // Of a range half of all lie near its middle, where rules are at home.
+  // The ends of a range, zero, any, and half of all near its middle, where rules are at home.
   double number(graph::Interval range) {
-    if (whole(0, 1) == 0) return static_cast<double>(whole(range.low, range.high));
     const int64_t middle = range.low / 2 + range.high / 2, wide = (range.high / 2 - range.low / 2) / 64;
-    return static_cast<double>(
-        whole(std::max(range.low, middle - wide), std::min(range.high, middle + wide)));
+    const int64_t near = whole(std::max(range.low, middle - wide), std::min(range.high, middle + wide));
+    const int64_t choices[] = {range.low,
+                               range.high,
+                               std::clamp<int64_t>(0, range.low, range.high),
+                               whole(range.low, range.high),
+                               near,
+                               near,
+                               near,
+                               near};
+    return static_cast<double>(choices[whole(0, 7)]);
   }
   void fill(PaddedArray<double>& to, graph::Interval range) {
     to = PaddedArray<double>(kParticles);
