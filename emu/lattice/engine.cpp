@@ -61,9 +61,6 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
   snapshot_.position_frac = plan.rule.widths.position_frac;
   snapshot_.threads = threads_;
   if (plan.program != nullptr) {
-    if (shared())
-      throw InputError("a rule of text runs on one rank of the lattice engine", "use --threads")
-          .about({"rule.file", "rule"});
     rounds_.emplace(plan.program->program, rule_, lattice_, plan.program->rows.get());
     if (options_.rule_code == RuleCode::compiled) compile_rounds();
   }
@@ -147,16 +144,6 @@ void LatticeEngine::Impl::fill_fields(const std::vector<int64_t>& fields) {
   });
 }
 
-std::vector<int64_t> LatticeEngine::Impl::fields() const {
-  const size_t numbers = particles_.fields.size();
-  std::vector<int64_t> fields(numbers * count_);
-  for_each_index([&](uint32_t p) {
-    for (size_t f = 0; f < numbers; ++f)
-      fields[particles_.id_of(p) * numbers + f] = static_cast<int64_t>(particles_.fields[f][p]);
-  });
-  return fields;
-}
-
 Particle LatticeEngine::Impl::particle(uint32_t index) const {
   Particle p;
   p.id = particles_.id_of(index);
@@ -171,13 +158,6 @@ Particle LatticeEngine::Impl::particle(uint32_t index) const {
     if (plan_.rule.pd) p.u[a] = static_cast<int64_t>(particles_.u[a][index]);
   }
   return p;
-}
-
-void LatticeEngine::Impl::give_bonds(State& state) const {
-  state.bonds = rounds_->give_bonds();
-  if (state.bonds.empty()) return;
-  for (const uint64_t first : plan_.program->rows->first)
-    state.bond_begin.push_back(first * static_cast<uint64_t>(rounds_->program().bond_numbers()));
 }
 
 std::vector<Particle> LatticeEngine::Impl::everyone() const {
@@ -296,12 +276,14 @@ void LatticeEngine::for_each_slot(const std::function<void(const Particle&)>& se
 
 uint64_t LatticeEngine::hash() const {
   const Impl& impl = *impl_;
-  if (impl.rounds_) return hash_of(impl.lattice_, state());
   std::atomic<uint64_t> all = 0;
-  for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
-    all += hash_particles(impl.particles_, impl.lattice_, impl.members_.cells(), impl.plan_.rule.widths,
-                          impl.blocks_[b].begin, impl.blocks_[b].end);
-  });
+  if (impl.rounds_)
+    all = impl.program_hash();
+  else
+    for_each_part(impl.blocks_.size(), impl.threads_, [&](size_t b, int) {
+      all += hash_particles(impl.particles_, impl.lattice_, impl.members_.cells(), impl.plan_.rule.widths,
+                            impl.blocks_[b].begin, impl.blocks_[b].end);
+    });
   uint64_t sum = all;
   if (impl_->shared()) impl_->options_.ranks->sum({&sum, 1});
   return sum;

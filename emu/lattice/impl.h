@@ -16,11 +16,18 @@
 
 namespace cuboct::emu {
 
+// Of an array.
+struct Stretch {
+  size_t begin, end;
+};
+
 struct LatticeEngine::Impl {
   Impl(const Plan& plan, uint64_t step, uint32_t count, const LatticeOptions& options);
   void fill(const std::function<Particle(uint32_t)>& particle);
   void fill_fields(const std::vector<int64_t>& fields);
-  std::vector<int64_t> fields() const;  // by id
+  // Of everyone, on rank 0: fields by id, bonds in the order of State::bonds, whose beginnings give_bonds
+  // adds.
+  std::vector<int64_t> fields() const;
   void give_bonds(State& state) const;
   Particle particle(uint32_t index) const;
   template <typename See>
@@ -34,6 +41,7 @@ struct LatticeEngine::Impl {
   }
   size_t number_of(const Block& block) const { return static_cast<size_t>(&block - blocks_.data()); }
   std::vector<Particle> everyone() const;  // sorted by id; of all ranks, on rank 0
+  uint64_t program_hash() const;           // of this rank's own
 
   // step.cpp
   void step();
@@ -51,6 +59,13 @@ struct LatticeEngine::Impl {
   void keep_fields();
   void compile_rounds();
   void compile_if_worth();
+  std::vector<PaddedArray<double>*> halo_of_round(size_t k);
+  std::vector<int64_t> own_fields(const std::vector<PaddedArray<double>>& from) const;
+  // Numbers that stand by id, of own particles: those of other ranks come to rank 0, or to all.
+  enum class To { first, all };
+  void gather(std::vector<int64_t>& numbers, const std::function<Stretch(uint32_t id)>& of, To whom) const;
+  Stretch fields_of(uint32_t id) const;
+  Stretch bonds_of(uint32_t id) const;
   [[noreturn]] void fail_as_golden() const;
 
   // lists.cpp
@@ -75,8 +90,10 @@ struct LatticeEngine::Impl {
   void wrap();
   void store_by_cell();
   void redistribute();
-  void start_halo();
-  void finish_halo();
+  std::vector<PaddedArray<double>*> halo();
+  void start_halo(const std::vector<PaddedArray<double>*>& arrays);
+  void finish_halo(const std::vector<PaddedArray<double>*>& arrays);
+  void exchange(const std::vector<PaddedArray<double>*>& arrays);
 
   const Plan& plan_;
   const Lattice& lattice_;

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <stdexcept>
 
 #include "emu/lattice/impl.h"
 #include "model/base/error.h"
+#include "model/base/hash.h"
 #include "model/base/resources.h"
 #include "model/contract/golden.h"
 
 namespace cuboct::emu {
 
 // Entries after which a compiler's two seconds are won back: the interpreter takes some 80 ns for one.
-constexpr uint64_t kWorthCompiling = 50'000'000;
+constexpr double kWorthCompiling = 5e7;
 
 void LatticeEngine::Impl::keep_fields() {
   rounds_->keep_bonds();
@@ -33,7 +35,21 @@ void LatticeEngine::Impl::compile_rounds() {
   const std::string directory = options_.code_directory.empty() ? cache_directory() : options_.code_directory;
   if (directory.empty())
     throw InputError("neither XDG_CACHE_HOME nor HOME is set: no place to keep a rule's compiled code");
-  rounds_->compile(options_.simd, directory);
+  if (!shared()) return rounds_->compile(options_.simd, directory);
+  // One rank compiles, then the others find what it made. None waits for one that failed.
+  std::exception_ptr error;
+  std::array<double, 1> failed{};
+  for (const bool first : {true, false}) {
+    if ((options_.ranks->rank() == 0) == first) try {
+        rounds_->compile(options_.simd, directory);
+      } catch (...) {
+        error = std::current_exception();
+        failed[0] = 1;
+      }
+    options_.ranks->most(failed);
+  }
+  if (error) std::rethrow_exception(error);
+  if (failed[0] > 0) throw InputError("a rule's code is not compiled on another rank");
 }
 
 // Where there is no compiler, or it is not to be trusted, the rule stays interpreted.
@@ -43,12 +59,103 @@ void LatticeEngine::Impl::compile_if_worth() {
     interpreted_ +=
         rounds_->program().rounds.size() * (block.inside.entries.size() + block.beside.pairs.entries.size() +
                                             rounds_->bond_entries(number_of(block)));
-  if (interpreted_ < kWorthCompiling) return;
+  // On all ranks in the same step.
+  std::array<double, 1> most{static_cast<double>(interpreted_)};
+  if (shared()) options_.ranks->most(most);
+  if (most[0] < kWorthCompiling) return;
   may_compile_ = false;
   try {
     compile_rounds();
   } catch (const InputError&) {
   }
+}
+
+Stretch LatticeEngine::Impl::fields_of(uint32_t id) const {
+  const size_t numbers = particles_.fields.size();
+  return {id * numbers, (id + 1) * numbers};
+}
+
+Stretch LatticeEngine::Impl::bonds_of(uint32_t id) const {
+  const auto numbers = static_cast<size_t>(rounds_->program().bond_numbers());
+  const std::vector<uint64_t>& first = plan_.program->rows->first;
+  return {first[id] * numbers, first[id + 1] * numbers};
+}
+
+std::vector<int64_t> LatticeEngine::Impl::own_fields(const std::vector<PaddedArray<double>>& from) const {
+  std::vector<int64_t> fields(from.size() * count_);
+  for_each_index([&](uint32_t p) {
+    auto to = fields.begin() + static_cast<ptrdiff_t>(fields_of(particles_.id_of(p)).begin);
+    for (const auto& field : from) *to++ = static_cast<int64_t>(field[p]);
+  });
+  return fields;
+}
+
+void LatticeEngine::Impl::gather(std::vector<int64_t>& numbers, const std::function<Stretch(uint32_t id)>& of,
+                                 To whom) const {
+  if (!shared()) return;
+  std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
+  for_each_index([&](uint32_t p) {
+    const uint32_t id = particles_.id_of(p);
+    append(to[0], int64_t{id});
+    for (size_t k = of(id).begin; k < of(id).end; ++k) append(to[0], numbers[k]);
+  });
+  Bytes all;
+  if (whom == To::all)
+    all = options_.ranks->all(to[0]);
+  else
+    for (const Bytes& bytes : options_.ranks->exchange(to)) all.insert(all.end(), bytes.begin(), bytes.end());
+  Stretch at{0, 0};
+  for_each_of<int64_t>(all, [&](int64_t number) {
+    if (at.begin == at.end)
+      at = of(static_cast<uint32_t>(number));
+    else
+      numbers[at.begin++] = number;
+  });
+}
+
+std::vector<int64_t> LatticeEngine::Impl::fields() const {
+  std::vector<int64_t> fields = own_fields(particles_.fields);
+  if (!fields.empty())
+    gather(
+        fields, [&](uint32_t id) { return fields_of(id); }, To::first);
+  return fields;
+}
+
+void LatticeEngine::Impl::give_bonds(State& state) const {
+  state.bonds = rounds_->give_bonds();
+  if (state.bonds.empty()) return;
+  gather(
+      state.bonds, [&](uint32_t id) { return bonds_of(id); }, To::first);
+  for (const uint64_t first : plan_.program->rows->first)
+    state.bond_begin.push_back(first * static_cast<uint64_t>(rounds_->program().bond_numbers()));
+}
+
+uint64_t LatticeEngine::Impl::program_hash() const {
+  const std::vector<int64_t> bonds = rounds_->give_bonds();
+  std::atomic<uint64_t> all = 0;
+  for_each_part(blocks_.size(), threads_, [&](size_t b, int) {
+    uint64_t sum = 0;
+    for (uint32_t p = blocks_[b].begin; p < blocks_[b].end; ++p) {
+      Hash hash;
+      hash.resume(hash_of(lattice_, particle(p)));
+      for (const auto& field : particles_.fields) hash.add(static_cast<int64_t>(field[p]));
+      if (!bonds.empty()) {
+        const Stretch own = bonds_of(particles_.id_of(p));
+        for (size_t k = own.begin; k < own.end; ++k) hash.add(bonds[k]);
+      }
+      sum += hash.value();
+    }
+    all += sum;
+  });
+  return all;
+}
+
+// What ghosts show in round k: where they are, and the fields that it reads of others.
+std::vector<PaddedArray<double>*> LatticeEngine::Impl::halo_of_round(size_t k) {
+  std::vector<PaddedArray<double>*> arrays;
+  if (k == 0) arrays = halo();
+  for (const size_t number : rounds_->read_of_others(k)) arrays.push_back(&particles_.fields[number]);
+  return arrays;
 }
 
 // No particle moves before every round is done, so a fault finds the state as the step did, but for fields.
@@ -61,25 +168,42 @@ void LatticeEngine::Impl::run_rounds(const Active& active) {
     for_each_block([&](Block& block) {
       if (!work(block)) fits = false;
     });
-    if (!fits) fail_as_golden();
+    if (!fits && !shared()) fail_as_golden();
   };
   for (size_t k = 0; k < rounds_->program().rounds.size(); ++k) {
+    if (shared()) exchange(halo_of_round(k));
     all([&](Block& block) { return rounds_->meet(k, number_of(block), {particles_, block, active, step_}); });
     all([&](Block& block) { return rounds_->finish(k, number_of(block), block, particles_, active, step_); });
+  }
+  if (shared()) {
+    std::array<double, 1> failed{fits ? 0.0 : 1.0};
+    options_.ranks->most(failed);
+    if (failed[0] > 0) fail_as_golden();
   }
   for_each_block([&](Block& block) { rounds_->move(block, particles_, active); });
 }
 
-// Golden takes the same step, and says what does not fit.
+// Golden takes the same step, on each rank, and says what does not fit.
 void LatticeEngine::Impl::fail_as_golden() const {
+  std::vector<Particle> by_id(count_);
+  Bytes mine;
+  for_each_index([&](uint32_t p) { append(mine, particle(p)); });
+  for_each_of<Particle>(shared() ? options_.ranks->all(mine) : mine,
+                        [&](const Particle& one) { by_id[one.id] = one; });
+  std::vector<int64_t> fields = own_fields(fields_before_), bonds = rounds_->bonds_before();
+  if (!fields.empty())
+    gather(
+        fields, [&](uint32_t id) { return fields_of(id); }, To::all);
+  if (!bonds.empty())
+    gather(
+        bonds, [&](uint32_t id) { return bonds_of(id); }, To::all);
   State begin{step_, {}};
   for (uint32_t n = 0; n < lattice_.size(); ++n)
     members_.for_each(n, [&](uint32_t id) {
-      begin.particles.push_back(particle(index_(id)));
-      for (const auto& field : fields_before_)
-        begin.fields.push_back(static_cast<int64_t>(field[index_(id)]));
+      begin.particles.push_back(by_id[id]);
+      for (size_t k = fields_of(id).begin; k < fields_of(id).end; ++k) begin.fields.push_back(fields[k]);
     });
-  begin.bonds = rounds_->bonds_before();
+  begin.bonds = std::move(bonds);
   Golden(rounds_->program(), lattice_, plan_.arch.capacity, begin, plan_.program->rows).step();
   throw std::logic_error("the lattice engine finds a fault that golden does not");
 }

@@ -142,11 +142,12 @@ void LatticeEngine::Impl::own_cells() {
 void LatticeEngine::Impl::redistribute() {
   Ranks& ranks = *options_.ranks;
   const int me = ranks.rank();
-  std::vector<Bytes> to(peers_.size());
+  std::vector<Bytes> to(peers_.size()), fields_to(peers_.size());
   for_each_index([&](uint32_t p) {
     const uint32_t id = particles_.id_of(p);
     const int owner = owner_[members_.cells()[id]];
     if (owner == me) return;
+    for (const auto& field : particles_.fields) append(fields_to[static_cast<size_t>(owner)], field[p]);
     Moving moving{id, particles_.type[p], {}, {}, {}, {}};
     for (int a = 0; a < 3; ++a) {
       moving.x[a] = particles_.x[a][p];
@@ -157,6 +158,7 @@ void LatticeEngine::Impl::redistribute() {
     append(to[static_cast<size_t>(owner)], moving);
   });
   const std::vector<Bytes> from = ranks.exchange(to);
+  const std::vector<Bytes> fields_from = rounds_ ? ranks.exchange(fields_to) : fields_to;
 
   std::vector<uint32_t> rim, core;  // ids
   for (uint32_t n = 0; n < lattice_.size(); ++n) {
@@ -208,15 +210,20 @@ void LatticeEngine::Impl::redistribute() {
           particles_.v[a][begin] = old.v[a][p];
           if (plan_.rule.pd) particles_.u[a][begin] = old.u[a][p];
         }
+        for (size_t f = 0; f < old.fields.size(); ++f) particles_.fields[f][begin] = old.fields[f][p];
       }
       ++begin;
     }
   };
   place(core, 0);
   place(rim, core_room);
-  for (const Bytes& bytes : from)
-    for_each_of<Moving>(bytes, [&](const Moving& moving) {
+  for (size_t q = 0; q < from.size(); ++q) {
+    std::vector<double> fields;
+    for_each_of<double>(fields_from[q], [&](double number) { fields.push_back(number); });
+    auto number = fields.begin();
+    for_each_of<Moving>(from[q], [&](const Moving& moving) {
       const uint32_t p = index_(moving.id);
+      for (auto& field : particles_.fields) field[p] = *number++;
       particles_.type[p] = static_cast<uint8_t>(moving.type);
       for (int a = 0; a < 3; ++a) {
         particles_.x[a][p] = moving.x[a];
@@ -225,6 +232,7 @@ void LatticeEngine::Impl::redistribute() {
         if (plan_.rule.pd) particles_.u[a][p] = moving.u[a];
       }
     });
+  }
   blocks_.clear();
   cut_blocks(blocks_, 0, static_cast<uint32_t>(core.size()));
   cut_blocks(blocks_, core_room, core_room + static_cast<uint32_t>(rim.size()));
@@ -251,40 +259,48 @@ void LatticeEngine::Impl::redistribute() {
   for (size_t q = 0; q < peers_.size(); ++q)
     for (uint32_t k = 0; k < peers_[q].take_count; ++k)
       particles_.type[peers_[q].take_from + k] = static_cast<uint8_t>(their_types[q][k]);
-  start_halo();
-  finish_halo();
+  exchange(halo());
 }
 
-// Positions, and velocities where they matter, axis by axis.
-void LatticeEngine::Impl::start_halo() {
+// Positions, and velocities where they matter.
+std::vector<PaddedArray<double>*> LatticeEngine::Impl::halo() {
+  std::vector<PaddedArray<double>*> arrays;
+  for (auto& x : particles_.x) arrays.push_back(&x);
+  if (plan_.rule.damped || (rounds_ && rounds_->reads_velocities()))
+    for (auto& v : particles_.v) arrays.push_back(&v);
+  return arrays;
+}
+
+// Of each other rank what its ghosts have.
+void LatticeEngine::Impl::start_halo(const std::vector<PaddedArray<double>*>& arrays) {
   std::vector<std::span<const double>> out;
   std::vector<std::span<double>> in;
-  const size_t fields = plan_.rule.damped ? 6 : 3;
   for (Peer& peer : peers_) {
-    peer.out.resize(peer.give.size() * fields);
-    peer.in.resize(peer.take_count * fields);
+    peer.out.resize(peer.give.size() * arrays.size());
+    peer.in.resize(peer.take_count * arrays.size());
     double* to = peer.out.data();
-    for (size_t f = 0; f < fields; ++f) {
-      const PaddedArray<double>& field = f < 3 ? particles_.x[f] : particles_.v[f - 3];
-      for (const uint32_t p : peer.give) *to++ = field[p];
-    }
+    for (const PaddedArray<double>* array : arrays)
+      for (const uint32_t p : peer.give) *to++ = (*array)[p];
     out.emplace_back(peer.out);
     in.emplace_back(peer.in);
   }
   options_.ranks->start(out, in);
 }
 
-void LatticeEngine::Impl::finish_halo() {
+void LatticeEngine::Impl::finish_halo(const std::vector<PaddedArray<double>*>& arrays) {
   options_.ranks->finish();
-  const size_t fields = plan_.rule.damped ? 6 : 3;
   for (const Peer& peer : peers_) {
     const double* from = peer.in.data();
-    for (size_t f = 0; f < fields; ++f) {
-      PaddedArray<double>& field = f < 3 ? particles_.x[f] : particles_.v[f - 3];
-      std::copy(from, from + peer.take_count, field.data() + peer.take_from);
+    for (PaddedArray<double>* array : arrays) {
+      std::copy(from, from + peer.take_count, array->data() + peer.take_from);
       from += peer.take_count;
     }
   }
+}
+
+void LatticeEngine::Impl::exchange(const std::vector<PaddedArray<double>*>& arrays) {
+  start_halo(arrays);
+  finish_halo(arrays);
 }
 
 }  // namespace cuboct::emu

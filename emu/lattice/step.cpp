@@ -67,13 +67,14 @@ std::vector<Crossing> LatticeEngine::Impl::all_crossings() const {
 
 // The ghosts travel while all that does not need them is worked on.
 void LatticeEngine::Impl::forces_and_update(const Active& active) {
-  if (shared()) start_halo();
+  const std::vector<PaddedArray<double>*> arrays = halo();
+  if (shared()) start_halo(arrays);
   for_each_block([&](Block& block) { kernels_.across(rule_, particles_, active, block.beside, block); });
   for_each_block([&](Block& block) {
     if (block.ghosts.group.empty()) kernels_.inside(rule_, particles_, active, block);
   });
   if (!shared()) return;
-  finish_halo();
+  finish_halo(arrays);
   for_each_block([&](Block& block) {
     if (block.ghosts.group.empty()) return;
     kernels_.across(rule_, particles_, active, block.ghosts, block);

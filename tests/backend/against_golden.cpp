@@ -8,6 +8,8 @@
 
 #include "model/analysis/measure.h"
 #include "model/contract/golden.h"
+#include "model/contract/pair_program.h"
+#include "model/program/integer_program.h"
 #include "model/trace/compare.h"
 #include "tests/support/block.h"
 
@@ -117,6 +119,16 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
   count.lists.sorts += lists.sorts;
   count.lists.node_steps += lists.node_steps;
   count.lists.quiet_node_steps += lists.quiet_node_steps;
+}
+
+Case as_program(Case c) {
+  Plan& plan = c.setup.plan;
+  auto program = std::make_shared<IntegerProgram>();
+  FixedRule rule = plan.rule;
+  rule.axes = 3;  // golden moves along z in flat scenes too
+  program->program = pair_program(rule, plan.arch.capacity);
+  plan.program = std::move(program);
+  return c;
 }
 
 Case faulty_gas(uint64_t seed) {

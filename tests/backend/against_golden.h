@@ -26,6 +26,9 @@ struct Count {
 // first has all particles.
 void compare(const Case& c, const emu::LatticeOptions& options, Count& count);
 
+// The same, whose pair law is a program.
+Case as_program(Case c);
+
 // A gas, damped, that at last collides faster than its relative velocities are wide.
 Case faulty_gas(uint64_t seed);
 

@@ -2,22 +2,10 @@
 // Programs on the lattice engine: the pair law as a program beside golden, on every case.
 #include <gtest/gtest.h>
 
-#include "model/contract/pair_program.h"
-#include "model/program/integer_program.h"
 #include "tests/backend/against_golden.h"
 
 namespace cuboct::test {
 namespace {
-
-Case as_program(Case c) {
-  Plan& plan = c.setup.plan;
-  auto program = std::make_shared<IntegerProgram>();
-  FixedRule rule = plan.rule;
-  rule.axes = 3;  // golden moves along z in flat scenes too
-  program->program = pair_program(rule, plan.arch.capacity);
-  plan.program = std::move(program);
-  return c;
-}
 
 // Threads and quiescence; there is one vector unit, the widest.
 std::vector<emu::LatticeOptions> program_variants(emu::RuleCode code = emu::RuleCode::interpreted) {

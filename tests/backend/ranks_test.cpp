@@ -8,6 +8,10 @@
 
 #include "emu/lattice/engine.h"
 #include "emu/lattice/mpi_ranks.h"
+#include "emu/lattice/run.h"
+#include "hw/engine_kind.h"
+#include "hw/setup.h"
+#include "model/scene/scene.h"
 #include "tests/backend/against_golden.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
@@ -56,6 +60,49 @@ TEST(Ranks, MeetEachFaultAlike) {
     if (HasFatalFailure()) return;
   }
   EXPECT_EQ(count.faults, all_faults().size());
+}
+
+TEST(Ranks, HoldGoldensBitsOfPrograms) {
+  Count count;
+  const std::vector<std::string> names = case_names();
+  for (size_t i = 0; i < names.size(); i += 3) {
+    compare(as_program(make_case(names[i])), {1, i % 2 == 0, "", world, kCuts[i % 4]}, count);
+    if (HasFatalFailure()) return;
+  }
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    compare(as_program(random_case(seed)), {2, seed % 3 != 0, "", world, kCuts[seed % 4]}, count);
+    if (HasFatalFailure()) return;
+  }
+  for (const Fault fault : {Fault::sum, Fault::velocity}) {
+    compare(as_program(fault_case(fault)), {1, true, "", world, "bricks"}, count);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(count.updates, 1000u);
+  EXPECT_GT(count.faults, 1u);
+}
+
+// Fields, bonds and several rounds across ranks.
+TEST(Ranks, HoldGoldensBitsOfRulesOfText) {
+  for (const std::string name : {"heat", "glass", "plastic", "copper"}) {
+    SCOPED_TRACE(name);
+    const std::string file = CUBOCT_SOURCE_DIR "/scenes/rules/" + name + ".toml";
+    const std::vector<StageName> stages = stages_of(file);
+    const Scene scene = read_scene(file, {.stage = stages.empty() ? "" : stages.front().name});
+    const Plan plan = program_plan_of(scene, Arch());
+    const auto golden = golden_kind(scene, plan).make(nullptr, false);
+    const emu::LatticeChoice choice{
+        .engine = {.threads = 1,
+                   .simd = {},
+                   .ranks = world,
+                   .cut = name == "glass" ? "y" : "bricks",
+                   .rule_code = name == "copper" ? emu::RuleCode::compiled : emu::RuleCode::interpreted,
+                   .code_directory = CUBOCT_RULE_CODE}};
+    const auto lattice = emu::lattice_kind(scene, plan, choice).make(nullptr, false);
+    std::vector<uint64_t> expected{golden->hash()}, found{lattice->hash()};
+    golden->advance(8, &expected);
+    lattice->advance(8, &found);
+    ASSERT_EQ(found, expected);
+  }
 }
 
 // Lists are made anew many times, and particles change ranks.

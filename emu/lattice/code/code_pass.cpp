@@ -103,11 +103,16 @@ bool CodePass::run(const Scope& scope, BondList& bonds, Sums& sums) const {
     fits = library_.meet(round_, Ends::both)(job);
   else if (!bonded)
     for (const Ends ends : {Ends::own, Ends::other}) fits = library_.meet(round_, ends)(job) && fits;
+  const auto across = [&](const Entry* entries, const std::vector<EntryGroup>& groups, const uint32_t* of) {
+    give_list(job, entries, groups, of);
+    fits = library_.meet(round_, Ends::own)(job) && fits;
+  };
   if (bonded)
-    give_list(job, bonds.entries.data(), bonds.own, nullptr);
+    across(bonds.entries.data(), bonds.own, nullptr);
   else
-    give_list(job, block.beside.pairs.entries.data(), block.beside.pairs.groups, block.beside.group.data());
-  return library_.meet(round_, Ends::own)(job) && fits;
+    for (const Edge* edge : {&block.beside, &block.ghosts})
+      across(edge->pairs.entries.data(), edge->pairs.groups, edge->group.data());
+  return fits;
 }
 
 }  // namespace cuboct::emu

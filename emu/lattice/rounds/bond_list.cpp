@@ -64,6 +64,10 @@ void BondList::build(const Block& block, const Particles& particles, const Index
       const uint32_t id = particles.id_of(i);
       for (uint64_t b = rows.first[id]; b < rows.first[id + 1]; ++b) {
         const uint32_t j = index(rows.other[b]);
+        if (j == kNoParticle) {
+          far.push_back(b);
+          continue;
+        }
         const bool inside = once && j >= block.begin && j < block.end;
         if (inside && j < i) continue;
         bonds.push_back({inside ? Ends::both : Ends::own,

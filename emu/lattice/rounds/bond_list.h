@@ -30,7 +30,8 @@ struct BondList {
   std::vector<EntryGroup> both, own;
   std::vector<uint64_t> bond, twin;  // [slot]: index into the rows, from either end; kNoBond: there is none
   static constexpr uint64_t kNoBond = ~uint64_t{0};
-  PaddedArray<uint32_t> kind;                        // [slot], of the rows
+  std::vector<uint64_t> far;   // index into the rows: the partner is too far to be known to this rank
+  PaddedArray<uint32_t> kind;  // [slot], of the rows
   std::vector<PaddedArray<double>> numbers, before;  // [number][slot]: now, and when the step began
   static size_t slot(size_t entry, uint32_t lane) { return entry * kGroup + lane; }
 

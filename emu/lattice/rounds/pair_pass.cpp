@@ -84,8 +84,8 @@ void PairPass::meet_pairs(const Scope& scope, Sums& sums) {
   };
   for (uint32_t k = 0; k < scope.block.groups(); ++k) all(scope.block.inside, k, k, true);
   flush(scope, once_ ? Ends::both : Ends::own, none, sums);
-  const Edge& beside = scope.block.beside;
-  for (size_t k = 0; k < beside.group.size(); ++k) all(beside.pairs, k, beside.group[k], false);
+  for (const Edge* edge : {&scope.block.beside, &scope.block.ghosts})
+    for (size_t k = 0; k < edge->group.size(); ++k) all(edge->pairs, k, edge->group[k], false);
   flush(scope, Ends::own, none, sums);
 }
 

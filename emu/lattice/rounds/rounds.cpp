@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "emu/lattice/code/proof.h"
 #include "model/base/error.h"
+#include "model/contract/program_run.h"
 
 namespace cuboct::emu {
 namespace {
@@ -52,6 +54,22 @@ bool Rounds::knows_time() const {
   });
 }
 
+bool Rounds::reads_velocities() const {
+  return std::ranges::any_of(program_.rounds, [](const graph::Round& round) {
+    return std::ranges::any_of(round.pair.nodes, [](const graph::Node& node) {
+      return node.op == graph::Op::input && node.source == graph::Source::other_v;
+    });
+  });
+}
+
+std::vector<size_t> Rounds::read_of_others(size_t k) const {
+  std::set<size_t> numbers;
+  for (const graph::Node& node : program_.rounds[k].pair.nodes)
+    if (node.op == graph::Op::input && node.source == graph::Source::other_field)
+      numbers.insert(static_cast<size_t>(program_.place(node.index) + node.axis));
+  return {numbers.begin(), numbers.end()};
+}
+
 void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
   parts_.resize(blocks.size());
   for (size_t b = 0; b < blocks.size(); ++b) {
@@ -84,6 +102,12 @@ void Rounds::list_bonds(size_t b, const Block& block, const Particles& particles
     for (size_t k = 0; k < numbers; ++k)
       if (list.bond[slot] != BondList::kNoBond)
         list.numbers[k][slot] = static_cast<double>(bonds_[list.bond[slot] * numbers + k]);
+  parts_[b].lost = std::ranges::any_of(list.far, [&](uint64_t bond) {
+    const graph::BondRows& rows = *space_.rows;
+    return !is_broken(program_, {.bond = bonds_.data() + bond * numbers,
+                                 .bond_constants = rows.constants.data() +
+                                                   rows.kind[bond] * program_.bond_constants.size()});
+  });
 }
 
 std::vector<int64_t> Rounds::whole(std::vector<PaddedArray<double>> BondList::*values) const {
@@ -117,6 +141,7 @@ void Rounds::compile(const std::string& simd, const std::string& directory) {
 }
 
 bool Rounds::meet(size_t k, size_t b, const Scope& scope) {
+  if (parts_[b].lost) return false;
   if (compiled()) return code_[k].run(scope, parts_[b].bonds, parts_[b].sums[k]);
   return parts_[b].pairs[k]->run(scope, parts_[b].bonds, parts_[b].sums[k]);
 }

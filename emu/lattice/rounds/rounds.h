@@ -21,6 +21,9 @@ class Rounds {
   const graph::FixedProgram& program() const { return program_; }
   // Whether some value depends on the number of the step: then nothing is ever at rest.
   bool knows_time() const;
+  // Of neighbours: whether some round reads their velocities; numbers of fields that round k reads.
+  bool reads_velocities() const;
+  std::vector<size_t> read_of_others(size_t k) const;
   // Partners are those of bonds, and no list grows old.
   bool bonded() const { return space_.rows != nullptr; }
 
@@ -55,6 +58,7 @@ class Rounds {
     std::vector<std::unique_ptr<FinishPass>> finishes;
     std::vector<Sums> sums;
     BondList bonds;
+    bool lost = false;  // a bond that counts has its partner too far away
   };
   std::vector<int64_t> whole(std::vector<PaddedArray<double>> BondList::*numbers) const;
 
