@@ -485,11 +485,6 @@ class RoundsEngine final : public IntegerEngine {
 
 std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan& plan, const State& initial,
                                                   const Options& options) {
-  const Cell& ring = plan.lattice.period();
-  if (plan.program->rows != nullptr && std::count(ring.begin(), ring.end(), 3) > 0)
-    throw InputError("a box of three cells along an axis: bonds meet around it in golden alone",
-                     "engine golden, or a longer box")
-        .about({"box.cells", "box.size", "box"});
   if (options.devices.size() > 1)
     throw InputError("a rule of text runs on one GPU", "--gpus 1").about({"rule.file", "rule"});
   return std::make_unique<RoundsEngine>(plan, initial, options);

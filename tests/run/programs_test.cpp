@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Rules of text: every engine of integers has golden's bits, whatever becomes of bonds, cells and sleep.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/run/kinds.h"
+
+namespace cuboct::test {
+namespace {
+
+// The engines of kinds.h that run programs, but for golden.
+std::vector<Kind> program_kinds() {
+  std::vector<Kind> kinds = fixed_kinds();
+  std::erase_if(kinds, [](const Kind& kind) { return kind.name == "golden" || kind.name == "systemc"; });
+  return kinds;
+}
+
+Bed text_bed(const std::string& text, int capacity = kAutomatic) {
+  Bed bed;
+  bed.scene = parse_scene(text, "rule.toml");
+  Arch arch;
+  arch.capacity = capacity;
+  bed.plan = program_plan_of(bed.scene, arch);
+  bed.one_thread.engine.threads = 1;
+  bed.two_threads.engine.threads = 2;
+  return bed;
+}
+
+State state_of(Engine& engine) { return std::get<State>(engine.integers()); }
+
+// The hash after each step, and the fault that ends them.
+struct Ran {
+  std::vector<uint64_t> hashes;
+  std::string fault;
+};
+Ran run(Engine& engine, uint64_t steps) {
+  Ran ran;
+  try {
+    engine.advance(steps, &ran.hashes);
+  } catch (const RunError& error) {
+    ran.fault = error.what();
+  }
+  return ran;
+}
+
+class TextPrograms : public testing::TestWithParam<Kind> {
+ protected:
+  std::unique_ptr<Engine> golden(const Bed& bed) {
+    kind_ = golden_kind(bed.scene, bed.plan);
+    return kind_.make(nullptr, false);
+  }
+  std::unique_ptr<Engine> engine(const Bed& bed) {
+    other_ = GetParam().make(bed, {});
+    return other_.make(nullptr, false);
+  }
+
+ private:
+  EngineKind kind_, other_;
+};
+
+// Two halves of a metal's packing slide past one another, 0.16 mm a step, in a box of so many cubic cells of
+// 1.41 mm. `met` counts the steps in which a bond met its partner.
+std::string sliding(int cells, const std::string& rule) {
+  const std::string half = "region = { shape = \"half_space\", point = \"[0, 0, 2.1] mm\", normal = ";
+  return "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\n"
+         "run = { dt = \"0.2 us\", steps = 9 }\n"
+         "[box]\nperiodic = \"xyz\"\ncells = [" +
+         std::to_string(cells) + ", 3, 3]\n[[velocity]]\n" + half +
+         "\"z\" }\nuniform = \"[400, 30, 0] m/s\"\n[[velocity]]\n" + half +
+         "\"-z\" }\nuniform = \"[-400, 0, 0] m/s\"\n[rule]\nbonds = \"reference\"\nreach = \"1.05 * "
+         "pitch\"\n" +
+         rule;
+}
+const std::string kCut =
+    "broken = \"cut\"\n[rule.bond.cut]\nkind = \"truth\"\n[rule.bond.met]\nrange = [0, 4096]\n"
+    "[[rule.round]]\nbond.cut = \"cut or r > 1.08 * r0 or r < 0.93 * r0\"\n"
+    "bond.met = \"min(met + 1, 4000)\"\n"
+    "sum.force = { is = \"1 kN/m * (r - r0) * d / r\", when = \"not cut\" }\n";
+
+// The places of a bond's numbers: cut, met.
+constexpr size_t kNumbers = 2, kMet = 1;
+
+// In a ring of three cells all are neighbours, and a bond meets its partner at whatever distance.
+TEST_P(TextPrograms, BondsMeetAroundARingOfThreeCells) {
+  const Bed bed = text_bed(sliding(3, kCut));
+  ASSERT_EQ(bed.plan.lattice.period(), (Cell{3, 3, 3}));
+  const auto golden = this->golden(bed), other = engine(bed);
+  constexpr int64_t kSteps = 60;
+  const Ran expected = run(*golden, kSteps), found = run(*other, kSteps);
+  EXPECT_EQ(expected.fault, "");
+  EXPECT_EQ(found.hashes, expected.hashes);
+  const State state = state_of(*golden);
+  size_t cut = 0;
+  for (size_t b = 0; b < state.bonds.size(); b += kNumbers) {
+    cut += state.bonds[b] != 0;
+    ASSERT_EQ(state.bonds[b + kMet] >> bed.plan.program->bond_scales[kMet].frac, kSteps) << b;
+  }
+  EXPECT_GT(cut, 100u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, TextPrograms, testing::ValuesIn(program_kinds()),
+                         [](const auto& p) { return p.param.name; });
+
+}  // namespace
+}  // namespace cuboct::test
