@@ -261,8 +261,7 @@ class RoundsEngine final : public IntegerEngine {
       for (uint64_t b = rows_->first[id]; b < rows_->first[id + 1]; ++b)
         for (const auto& values : numbers)
           state.bonds.push_back(values[(b - rows_->first[id]) * count_ + order[id]]);
-    for (const uint64_t first : rows_->first)
-      state.bond_begin.push_back(first * static_cast<uint64_t>(bond_count()));
+    state.bond_begin = begins_of(*rows_, bond_count());
   }
 
   // Of copy `at_`, in the order of the device.

@@ -175,9 +175,8 @@ Particle LatticeEngine::Impl::particle(uint32_t index) const {
 
 void LatticeEngine::Impl::give_bonds(State& state) const {
   state.bonds = rounds_->give_bonds();
-  if (state.bonds.empty()) return;
-  for (const uint64_t first : plan_.program->rows->first)
-    state.bond_begin.push_back(first * static_cast<uint64_t>(rounds_->program().bond_numbers()));
+  if (!state.bonds.empty())
+    state.bond_begin = begins_of(*plan_.program->rows, rounds_->program().bond_numbers());
 }
 
 std::vector<Particle> LatticeEngine::Impl::everyone() const {

@@ -125,7 +125,7 @@ std::vector<Seen> Golden::bonded(uint32_t cell, uint32_t id, const std::vector<S
 Golden::Sums Golden::meet(const graph::Round& round) {
   std::vector<RunError> faults;
   PairRun pairs(*program_, round, step_);
-  const size_t numbers = numbers_of_sums(round);
+  const auto numbers = static_cast<size_t>(round.numbers());
   Sums sums(cells_.size());
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     if (cells_[n].empty()) continue;
@@ -147,7 +147,7 @@ void Golden::finish(const graph::Round& round, const Sums& sums, std::vector<std
   std::vector<RunError> faults;
   FinishRun run(*program_, round, step_);
   const bool last = &round == &program_->rounds.back();
-  const size_t numbers = numbers_of_sums(round);
+  const auto numbers = static_cast<size_t>(round.numbers());
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     std::vector<Seen> own;
     for (const Particle& p : cells_[n]) own.push_back(seen(p));
@@ -243,8 +243,7 @@ State Golden::state() const {
     for (size_t f = 0; f < numbers; ++f) state.fields.push_back(fields_[row_of_id_[p.id] * numbers + f]);
   if (bonds_.empty()) return state;
   state.bonds = bonds_;
-  for (const uint64_t first : rows_->first)
-    state.bond_begin.push_back(first * static_cast<uint64_t>(program_->bond_numbers()));
+  state.bond_begin = begins_of(*rows_, program_->bond_numbers());
   return state;
 }
 

@@ -59,9 +59,7 @@ void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
         part.finishes.push_back(std::make_unique<FinishPass>(program_, round, rule_));
       }
       part.sums[k].clear();
-      for (const graph::Sum& sum : round.sums)
-        for (size_t n = 0; n < sum.terms.size(); ++n)
-          part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
+      for (int n = 0; n < round.numbers(); ++n) part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
     }
   }
   moves_.axes = static_cast<int>(program_.motion.v.size());
