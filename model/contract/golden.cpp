@@ -189,12 +189,18 @@ Golden::Moving Golden::moved(const Particle& particle, FinishRun& run, size_t la
 }
 
 void Golden::step() {
+  // Rounds write fields and bonds where they stand: a step that fails puts back what it found.
+  std::pair before(fields_, bonds_);
   std::vector<std::vector<Moving>> moving(cells_.size());
-  for (const graph::Round& round : program_->rounds) finish(round, meet(round), moving);
-
-  // Migration: along x, then y, then z; those who stay keep their order, then come those from below, then
-  // from above.
-  for (int axis = 0; axis < 3; ++axis) migrate(axis, moving);
+  try {
+    for (const graph::Round& round : program_->rounds) finish(round, meet(round), moving);
+    // Migration: along x, then y, then z; those who stay keep their order, then come those from below, then
+    // from above.
+    for (int axis = 0; axis < 3; ++axis) migrate(axis, moving);
+  } catch (const RunError&) {
+    std::tie(fields_, bonds_) = std::move(before);
+    throw;
+  }
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     cells_[n].clear();
     for (const Moving& m : moving[n]) cells_[n].push_back(m.particle);
