@@ -99,6 +99,42 @@ TEST_P(TextPrograms, BondsMeetAroundARingOfThreeCells) {
   EXPECT_GT(cut, 100u);
 }
 
+// A bond that is pressed leaves its table in a step in which others break.
+TEST_P(TextPrograms, AFaultLeavesTheStateBefore) {
+  const Bed bed = text_bed(sliding(
+      3,
+      "broken = \"cut\"\nbond.cut.kind = \"truth\"\n[[rule.round]]\nbond.cut = \"cut or r > 1.03 * r0\"\n"
+      "sum.force = { is = \"1 kN/m * (r - r0) * d / r\", when = \"not cut\" }\n"));
+  RunRequest request;
+  request.steps = 40;
+  request.frames = {0};
+  request.energies = request.totals = true;
+  const Recorded golden = record(bed.scene, golden_kind(bed.scene, bed.plan), request);
+  ASSERT_TRUE(golden.trace.stop);
+  EXPECT_EQ(golden.trace.stop->fault, Fault::strength);
+  const Recorded found = record(bed.scene, GetParam().make(bed, request), request);
+  EXPECT_EQ(found.trace.stop, golden.trace.stop);
+  request.steps = golden.trace.steps();
+  EXPECT_GT(request.steps, 0u);
+  const Recorded before = record(bed.scene, GetParam().make(bed, request), request);
+  EXPECT_FALSE(before.trace.stop);
+  const auto damage = [](const Recorded& run) {
+    const auto at = std::ranges::find(run.trace.counters, "mean_damage", &Counters::value_type::first);
+    return at == run.trace.counters.end() ? -1 : at->second;
+  };
+  EXPECT_GT(damage(before), 0);
+  for (const Recorded* run : {&golden, &found}) {
+    EXPECT_EQ(run->trace.state_hash, before.trace.state_hash);
+    EXPECT_EQ(run->trace.bonds, before.trace.bonds);
+    EXPECT_EQ(run->momentum_change, before.momentum_change);
+    EXPECT_EQ(damage(*run), damage(before));
+    ASSERT_EQ(run->trace.bodies.size(), 2u);
+    EXPECT_EQ(run->trace.bodies[1].x, before.trace.bodies[1].x);
+    for (size_t k = 0; k < before.trace.curves.size(); ++k)
+      EXPECT_EQ(run->trace.curves[k].value, before.trace.curves[k].value);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, TextPrograms, testing::ValuesIn(program_kinds()),
                          [](const auto& p) { return p.param.name; });
 
