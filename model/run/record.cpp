@@ -72,6 +72,7 @@ class Loop {
   const std::vector<uint64_t>& energy_steps() const {
     return request_.energy_steps.empty() ? request_.probes : request_.energy_steps;
   }
+  RunState frame();
   void keep();
   void journal(const std::function<void(Journal&)>& write);
   void save();
@@ -260,8 +261,10 @@ void Loop::measure(const Meter::Parts& parts, bool look) {
   if (leads()) meter_.add(reading, parts);
 }
 
+RunState Loop::frame() { return request_.integers ? engine_->integers() : engine_->frame(request_.forces); }
+
 void Loop::keep() {
-  RunState kept = request_.integers ? engine_->integers() : engine_->frame(request_.forces);
+  RunState kept = frame();
   if (!leads()) return;
   journal([&](Journal& to) { to.frame(kept); });
   give(request_, std::move(kept), trace_);
@@ -437,7 +440,7 @@ void Loop::finish() {
     });
     guarded([&] {
       if (!kept) return;
-      RunState last_frame = engine_->frame(request_.forces);
+      RunState last_frame = frame();
       if (leads()) give(request_, std::move(last_frame), trace_);
     });
   }

@@ -135,6 +135,20 @@ TEST_P(TextPrograms, AFaultLeavesTheStateBefore) {
   }
 }
 
+// The last frame is of integers as the others are, wherever a run ends.
+TEST_P(TextPrograms, KeepTheLastStateInIntegersToo) {
+  const Bed bed = text_bed(sliding(3, kCut));
+  RunRequest request;
+  request.steps = 5;
+  request.frames = {0, 3};
+  request.integers = true;
+  const Recorded run = record(bed.scene, GetParam().make(bed, request), request);
+  EXPECT_TRUE(run.trace.bodies.empty());
+  ASSERT_EQ(run.trace.frames.size(), 3u);
+  EXPECT_EQ(run.trace.frames[2].step, 5u);
+  EXPECT_EQ(hash_of(bed.plan.lattice, run.trace.frames[2]), run.trace.state_hash.back());
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, TextPrograms, testing::ValuesIn(program_kinds()),
                          [](const auto& p) { return p.param.name; });
 
