@@ -231,7 +231,7 @@ void Loop::record() {
     measure({.probes = true, .energies = energies}, among(looks_, step));
     look_for_end();
     if (leads() && journal_)
-      if (const std::vector<double> values = meter_.latest(); !values.empty())
+      if (const std::vector<double> values = meter_.values_at(step); !values.empty())
         journal([&](Journal& to) { to.sample(step, values); });
   }
   if (among(request_.frames, step)) keep();
@@ -339,7 +339,8 @@ void Loop::go() {
 
 void Loop::show() {
   if (leads())
-    log_.at(trace_.steps_done, among(request_.probes, trace_.steps_done), [this] { return meter_.latest(); });
+    log_.at(trace_.steps_done, among(request_.probes, trace_.steps_done),
+            [this] { return meter_.values_at(trace_.steps_done); });
 }
 
 bool Loop::save_is_due() const {
@@ -449,7 +450,7 @@ void Loop::finish() {
     for (const auto& counter : engine_->counters_of_state()) trace_.counters.push_back(counter);
   });
   if (bonds) trace_.bonds = engine_->saved_body()->bonds->kept;
-  if (leads()) log_.end(last, sample || among(request_.probes, last), [this] { return meter_.latest(); });
+  if (leads()) log_.end(last, sample || among(request_.probes, last), [&] { return meter_.values_at(last); });
   trace_.curves = meter_.curves();
   meter_.conclude();
   if (const Watch* watch = meter_.watch()) {
