@@ -94,7 +94,8 @@ Scaled Lowering::made(NodeId id, double unit) {
   if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
   if (fixed(id)) return fixed_product({{id, false}});
   if (bond_ != nullptr && of_r(id) && is_comparison(node.op))
-    return bond_->threshold([&](double r2, size_t length) { return radial_->at(id, r2, length) != 0; });
+    return bond_->threshold(
+        [&](const RealRange& r2, size_t length) { return certain(radial_->over(id, r2, length)); });
   if (of_r(id) && !is_truth(node.op)) return table({{id, false}}, unit);
   const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
   switch (node.op) {
