@@ -45,9 +45,10 @@ void Lowering::bonds(const Radial& radial, const Scaled& r2, BondGraph& bond) {
   windowed_.assign(graph_.nodes().size(), 0);
   for (NodeId id = 0; id < windowed_.size(); ++id) {
     const RealNode& node = graph_.at(id);
-    if (fixed(id) || radial.is_r2(id)) continue;
-    windowed_[id] = of_r(id) && !is_comparison(node.op);
-    for (size_t k = 0; !of_r(id) && k < static_cast<size_t>(arity(node.op)); ++k)
+    // A comparison of r is a threshold, and so are the parts of a truth that is made of such.
+    if (fixed(id) || radial.is_r2(id) || (of_r(id) && is_comparison(node.op))) continue;
+    windowed_[id] = of_r(id) && !is_truth(node.op);
+    for (size_t k = 0; k < static_cast<size_t>(arity(node.op)); ++k)
       if (windowed_[node.of[k]] != 0) windowed_[id] = 1;
   }
 }

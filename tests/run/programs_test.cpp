@@ -99,6 +99,20 @@ TEST_P(TextPrograms, BondsMeetAroundARingOfThreeCells) {
   EXPECT_GT(cut, 100u);
 }
 
+// Nothing says that these bonds break for ever, though they do not count while they are long.
+TEST_P(TextPrograms, ALostBondIsGoldensFault) {
+  const Bed bed = text_bed(sliding(
+      6,
+      "[rule.bond.met]\nrange = [0, 4096]\n[[rule.round]]\nbond.met = \"min(met + 1, 4000)\"\n"
+      "sum.force = { is = \"1 kN/m * (r - r0) * d / r\", when = \"r < 1.05 * r0 and r > 0.95 * r0\" }\n"));
+  const auto golden = this->golden(bed), other = engine(bed);
+  const Ran expected = run(*golden, 40), found = run(*other, 40);
+  EXPECT_NE(expected.fault.find("partner of a bond out of reach"), std::string::npos) << expected.fault;
+  EXPECT_EQ(found.fault, expected.fault);
+  EXPECT_EQ(found.hashes, expected.hashes);
+  EXPECT_GT(found.hashes.size(), 5u);
+}
+
 // A bond that is pressed leaves its table in a step in which others break.
 TEST_P(TextPrograms, AFaultLeavesTheStateBefore) {
   const Bed bed = text_bed(sliding(
