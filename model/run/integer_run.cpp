@@ -142,6 +142,10 @@ Counters IntegerRun::counters_of_state() {
   return setting_.program.rows ? RoundsRun::counters_of_state() : Counters();
 }
 
-Notes IntegerRun::notes() { return {{"rule", rounds_of(scene_.rule)->declaration().name}}; }
+Notes IntegerRun::notes() {
+  Notes notes = program_->notes();
+  notes.emplace_back("rule", rounds_of(scene_.rule)->declaration().name);
+  return notes;
+}
 
 }  // namespace cuboct

@@ -166,5 +166,24 @@ TEST_P(TextPrograms, KeepTheLastStateInIntegersToo) {
 INSTANTIATE_TEST_SUITE_P(Kinds, TextPrograms, testing::ValuesIn(program_kinds()),
                          [](const auto& p) { return p.param.name; });
 
+// Who measures a run of the gpu engine measures a rule of text as well.
+TEST(GpuOfText, TellsWhoMeasures) {
+  Bed bed = text_bed(sliding(3, kCut));
+  uint64_t ready = 0, steps = 0;
+  bed.gpu.hooks.ready = [&] { ++ready; };
+  bed.gpu.hooks.did = [&](uint64_t done) { steps += done; };
+  bed.gpu.hooks.finish = [&](Counters& counters, Notes& notes) {
+    counters.emplace_back("joules", steps);
+    notes.emplace_back("energy by", "a test");
+  };
+  RunRequest request;
+  request.steps = 20;
+  const Trace trace = record(bed.scene, gpu::gpu_kind(bed.scene, bed.plan, bed.gpu), request).trace;
+  EXPECT_EQ(ready, 1u);
+  EXPECT_EQ(steps, 20u);
+  EXPECT_TRUE(std::ranges::count(trace.counters, Counters::value_type("joules", 20)));
+  EXPECT_TRUE(std::ranges::count(trace.notes, Notes::value_type("energy by", "a test")));
+}
+
 }  // namespace
 }  // namespace cuboct::test
