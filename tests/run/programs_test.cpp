@@ -99,6 +99,29 @@ TEST_P(TextPrograms, BondsMeetAroundARingOfThreeCells) {
   EXPECT_GT(cut, 100u);
 }
 
+// Around a ring of seven cells they lose sight of one another, and meet again.
+TEST_P(TextPrograms, BrokenBondsPartAndMeetAgain) {
+  const Bed bed = text_bed(sliding(6, kCut));
+  const auto golden = this->golden(bed), other = engine(bed);
+  std::vector<int64_t> met;
+  std::vector<bool> parted;
+  size_t again = 0;
+  for (int part = 0; part < 8; ++part) {
+    const Ran expected = run(*golden, 10), found = run(*other, 10);
+    EXPECT_EQ(expected.fault, "");
+    ASSERT_EQ(found.hashes, expected.hashes);
+    const State state = state_of(*golden);
+    met.resize(state.bonds.size() / kNumbers), parted.resize(met.size());
+    for (size_t b = 0; b < met.size(); ++b) {
+      const int64_t now = state.bonds[kNumbers * b + kMet];
+      again += parted[b] && now > met[b];
+      parted[b] = now == met[b];
+      met[b] = now;
+    }
+  }
+  EXPECT_GT(again, 100u);
+}
+
 // Nothing says that these bonds break for ever, though they do not count while they are long.
 TEST_P(TextPrograms, ALostBondIsGoldensFault) {
   const Bed bed = text_bed(sliding(
@@ -161,6 +184,59 @@ TEST_P(TextPrograms, KeepTheLastStateInIntegersToo) {
   ASSERT_EQ(run.trace.frames.size(), 3u);
   EXPECT_EQ(run.trace.frames[2].step, 5u);
   EXPECT_EQ(hash_of(bed.plan.lattice, run.trace.frames[2]), run.trace.state_hash.back());
+}
+
+std::string counter_text(Engine& engine) {
+  std::string text;
+  for (const auto& [name, value] : engine.counters()) text += name + " " + std::to_string(value) + "\n";
+  return text;
+}
+double counter(Engine& engine, const std::string& name) {
+  for (const auto& [key, value] : engine.counters())
+    if (key == name) return value;
+  return -1;
+}
+
+// Every cell is full. Where a layer crosses into the next one, a step is possible though cells may be beyond
+// their capacity on the way: the gpu engine leaves it to golden, and takes fields back.
+TEST_P(TextPrograms, FullCellsPassFieldsOn) {
+  const Bed bed = text_bed(
+      "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nrun = { dt = \"0.2 us\", steps = 9 }\n"
+      "box = { periodic = \"xyz\", cells = [4, 3, 3] }\nvelocity = [ { uniform = \"[400, 0, 0] m/s\" } ]\n"
+      "[rule]\nreach = \"1.2 * pitch\"\nparticle.T = { range = [0, 2000], start = \"select(x.x > 2 mm, 400, "
+      "300)\" }\n"
+      "[[rule.round]]\nsum.q = \"0.01 * (T_j - T_i)\"\nfinish.T = \"T + q\"\n"
+      "sum.force = \"1 N/m * (1 mm - r) * d / r\"\n",
+      4);
+  const auto golden = this->golden(bed), other = engine(bed);
+  const Ran expected = run(*golden, 30), found = run(*other, 30);
+  EXPECT_EQ(expected.fault, "");
+  EXPECT_EQ(found.hashes, expected.hashes);
+  if (GetParam().name == "gpu") {
+    EXPECT_GT(counter(*other, "golden_steps"), 1) << counter_text(*other);
+  }
+}
+
+// What passes from neighbour to neighbour goes two of them further in a step of two rounds, into cells that
+// had slept. Of who sleeps the sums are not made: `full` of no neighbours would be far out of its range.
+TEST_P(TextPrograms, OfTwoRoundsRestAndNoCheckFailsAsleep) {
+  const Bed bed = text_bed(
+      "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nrun = { dt = \"0.2 us\", steps = 9 }\n"
+      "box = { periodic = \"x\", cells = [30, 2, 2] }\n[rule]\nreach = \"1.2 * pitch\"\nstill = true\n"
+      "particle.full = { range = [-1, 1] }\nparticle.most = {}\nparticle.heard.kind = \"truth\"\n"
+      "particle.told = { kind = \"truth\", start = \"x.x < 1 mm\" }\n"
+      "[[rule.setup]]\nsum.all = \"1\"\nfinish.most = \"all\"\n"
+      "[[rule.round]]\nsum.tellers = { is = \"1\", when = \"told_j\" }\nsum.n = \"1\"\n"
+      "finish.heard = \"tellers > 0\"\nfinish.full = \"1000 * (n - most)\"\n"
+      "[[rule.round]]\nsum.hearers = { is = \"1\", when = \"heard_j\" }\nfinish.told = \"told or hearers > "
+      "0\"\n");
+  const auto golden = this->golden(bed), other = engine(bed);
+  const Ran expected = run(*golden, 12), found = run(*other, 12);
+  EXPECT_EQ(expected.fault, "");
+  EXPECT_EQ(found.hashes, expected.hashes);
+  if (GetParam().name != "gpu") {
+    EXPECT_GT(counter(*other, "quiet_node_steps"), 100) << counter_text(*other);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, TextPrograms, testing::ValuesIn(program_kinds()),
