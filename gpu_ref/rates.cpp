@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "gpu_ref/rounds_engine.h"
+#include "hw/engine_kind.h"
 #include "model/base/interrupt.h"
 
 namespace cuboct::gpu {
@@ -10,17 +12,22 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+double seconds_of(auto&& engine, uint64_t steps) {
+  const auto begin = Clock::now();
+  engine->advance(steps, nullptr);
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
 }  // namespace
 
 std::vector<double> step_rates(const Scene& scene, const Plan& plan, const RateRequest& request) {
   const bool fixed = request.arithmetic == Arithmetic::fixed;
   const State initial = fixed ? to_fixed(scene.body, plan.rule, plan.lattice, plan.origin) : State();
+  const auto rounds = [&](const State& state) { return make_rounds_engine(plan, state, request.engine); };
   const auto seconds_of_a_run = [&] {
-    const auto engine = fixed ? make_fixed_engine(scene, plan, initial, request.engine)
-                              : make_real_engine(scene, scene.body, request.arithmetic, request.engine);
-    const auto begin = Clock::now();
-    engine->advance(request.steps);
-    return std::chrono::duration<double>(Clock::now() - begin).count();
+    if (plan.program != nullptr) return seconds_of(integer_run(scene, plan, nullptr, rounds), request.steps);
+    if (fixed) return seconds_of(make_fixed_engine(scene, plan, initial, request.engine), request.steps);
+    return seconds_of(make_real_engine(scene, scene.body, request.arithmetic, request.engine), request.steps);
   };
   std::vector<double> rates;
   for (int repeat = -1; repeat < request.repeats; ++repeat) {

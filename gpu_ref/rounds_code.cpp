@@ -85,16 +85,11 @@ struct Code {
       if (node.source == Source::own_field || node.source == Source::other_field)
         number = program.place(node.index) + node.axis;
       if (node.source == Source::bond_field) number = program.bond_place(node.index) + node.axis;
-      if (node.source == Source::sum) number = first_of_sum(node.index) + node.axis;
+      if (node.source == Source::sum) number = round.place(node.index) + node.axis;
       made.push_back({static_cast<uint8_t>(node.source), at(n), static_cast<uint8_t>(number),
                       static_cast<uint8_t>(node.axis)});
     }
     return made;
-  }
-  int first_of_sum(int sum) const {
-    size_t first = 0;
-    for (int k = 0; k < sum; ++k) first += round.sums[index(k)].terms.size();
-    return static_cast<int>(first);
   }
   std::vector<Store> axes(const std::vector<int>& list) const {
     std::vector<Store> made;
@@ -135,17 +130,10 @@ void add_broken(const graph::FixedProgram& program, const graph::Round& round, R
 
 RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round& round, Written& written,
                          Written& bonds_written) {
-  std::vector<int> terms;
-  for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
-  std::vector<int> outputs;
-  for (const graph::Write& write : round.writes) outputs.push_back(write.node);
   const bool last = &round == &program.rounds.back();
   const graph::Motion motion = last ? program.motion : graph::Motion{};
-  for (const auto* nodes : {&motion.v, &motion.u, &motion.drift})
-    outputs.insert(outputs.end(), nodes->begin(), nodes->end());
-
-  std::vector<int> made = terms;
-  for (const graph::Write& write : round.bond_writes) made.push_back(write.node);
+  const std::vector<int> terms = terms_of(round), made = pair_outputs(round),
+                         outputs = finish_outputs(program, round);
   const std::vector<int> early = needed_by(round.pair, {round.when});
   const std::vector<int> late = without(needed_by(round.pair, made), early);
   const std::vector<int> finish = needed_by(round.finish, outputs);

@@ -261,8 +261,7 @@ class RoundsEngine final : public IntegerEngine {
       for (uint64_t b = rows_->first[id]; b < rows_->first[id + 1]; ++b)
         for (const auto& values : numbers)
           state.bonds.push_back(values[(b - rows_->first[id]) * count_ + order[id]]);
-    for (const uint64_t first : rows_->first)
-      state.bond_begin.push_back(first * static_cast<uint64_t>(bond_count()));
+    state.bond_begin = begins_of(*rows_, bond_count());
   }
 
   // Of copy `at_`, in the order of the device.
@@ -485,11 +484,6 @@ class RoundsEngine final : public IntegerEngine {
 
 std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan& plan, const State& initial,
                                                   const Options& options) {
-  const Cell& ring = plan.lattice.period();
-  if (plan.program->rows != nullptr && std::count(ring.begin(), ring.end(), 3) > 0)
-    throw InputError("a box of three cells along an axis: bonds meet around it in golden alone",
-                     "engine golden, or a longer box")
-        .about({"box.cells", "box.size", "box"});
   if (options.devices.size() > 1)
     throw InputError("a rule of text runs on one GPU", "--gpus 1").about({"rule.file", "rule"});
   return std::make_unique<RoundsEngine>(plan, initial, options);

@@ -75,7 +75,8 @@ struct RoundsBonds {
     if (static_cast<graph::Source>(f.source) == graph::Source::bond_field) return from[f.index][slot];
     return constants[kind[slot] * static_cast<uint32_t>(constant_count) + f.index];
   }
-  // `apart` becomes that of the partner's image beside `own`. Whether their cells are neighbours.
+  // `apart` becomes that of the partner's image beside `own`. Whether their cells are neighbours: in a ring
+  // of three the image that is so may be farther away than another.
   CUBOCT_DEVICE bool meet(const int64_t (&own)[3], int64_t (&apart)[3]) const {
     bool met = true;
     for (int a = 0; a < 3; ++a) {
@@ -83,7 +84,12 @@ struct RoundsBonds {
         const int64_t half = apart[a] + period[a] / 2;
         apart[a] -= (half >= 0 ? half / period[a] : -((period[a] - 1 - half) / period[a])) * period[a];
       }
-      const int64_t cells = ((own[a] + apart[a]) >> position_frac) - (own[a] >> position_frac);
+      int64_t cells = ((own[a] + apart[a]) >> position_frac) - (own[a] >> position_frac);
+      if (period[a] > 0 && (cells < -1 || cells > 1)) {
+        const int64_t ring = cells < 0 ? -period[a] : period[a];
+        apart[a] -= ring;
+        cells -= ring >> position_frac;
+      }
       met = met && cells >= -1 && cells <= 1;
     }
     return met;

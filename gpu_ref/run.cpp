@@ -197,11 +197,50 @@ cuboct::Counters Runner::counters() {
   return counters;
 }
 
-// A rule that is text.
+// A rule that is text, with who measures beside it.
+class TextRunner : public IntegerEngine {
+ public:
+  TextRunner(std::unique_ptr<IntegerEngine> engine, const Hooks& hooks)
+      : engine_(std::move(engine)), hooks_(hooks) {}
+
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
+    const uint64_t before = step_count();
+    const auto done = [&] {
+      if (hooks_.did) hooks_.did(step_count() - before);
+    };
+    try {
+      engine_->advance(steps, hashes);
+    } catch (const RunError&) {
+      done();
+      throw;
+    }
+    done();
+  }
+  uint64_t step_count() const override { return engine_->step_count(); }
+  State state() const override { return engine_->state(); }
+  uint64_t hash() const override { return engine_->hash(); }
+  void for_each_slot(const std::function<void(const Particle&)>& see) const override {
+    engine_->for_each_slot(see);
+  }
+  cuboct::Counters counters() const override {
+    cuboct::Counters counters = engine_->counters();
+    notes_ = {{"precision", to_string(Arithmetic::fixed)}};
+    if (hooks_.finish) hooks_.finish(counters, notes_);
+    return counters;
+  }
+  Notes notes() const override { return notes_; }
+
+ private:
+  std::unique_ptr<IntegerEngine> engine_;
+  const Hooks& hooks_;
+  mutable Notes notes_;
+};
+
 std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan, const GpuChoice& choice,
                                             CheckpointReader* from) {
-  auto run = integer_run(scene, plan, from,
-                         [&](const State& state) { return make_rounds_engine(plan, state, choice.engine); });
+  auto run = integer_run(scene, plan, from, [&](const State& state) {
+    return std::make_unique<TextRunner>(make_rounds_engine(plan, state, choice.engine), choice.hooks);
+  });
   if (choice.hooks.ready) choice.hooks.ready();
   return run;
 }

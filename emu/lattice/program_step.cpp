@@ -126,8 +126,7 @@ void LatticeEngine::Impl::give_bonds(State& state) const {
   if (state.bonds.empty()) return;
   gather(
       state.bonds, [&](uint32_t id) { return bonds_of(id); }, To::first);
-  for (const uint64_t first : plan_.program->rows->first)
-    state.bond_begin.push_back(first * static_cast<uint64_t>(rounds_->program().bond_numbers()));
+  state.bond_begin = begins_of(*plan_.program->rows, rounds_->program().bond_numbers());
 }
 
 uint64_t LatticeEngine::Impl::program_hash() const {

@@ -60,12 +60,13 @@ std::vector<Curve> Meter::curves() const {
   return all;
 }
 
-std::vector<double> Meter::latest() const {
+std::vector<double> Meter::values_at(uint64_t step) const {
   std::vector<double> values;
-  const std::vector<Curve>&probes = probes_.curves(), &energies = energy_.curves();
-  for (const Curve& curve : probes) values.push_back(curve.value.back());
-  if (energies.empty() || (!probes.empty() && energies[0].step.back() < probes[0].step.back())) return values;
-  for (const Curve& curve : energies) values.push_back(curve.value.back());
+  for (const std::vector<Curve>* curves : {&probes_.curves(), &energy_.curves()})
+    for (const Curve& curve : *curves) {
+      if (curve.step.empty() || curve.step.back() != step) return values;
+      values.push_back(curve.value.back());
+    }
   return values;
 }
 

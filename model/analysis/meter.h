@@ -39,8 +39,9 @@ class Meter {
   // Probe curves, then energy.kinetic, energy.potential, energy.gravity and energy.total in J, then, where
   // the scene has them, temperature in K (reduced units: J) and pressure in Pa.
   std::vector<Curve> curves() const;
-  // The last value of each curve, once there is one; of probe curves alone where energies are older.
-  std::vector<double> latest() const;
+  // What was read of the last step that any was read of, if it is this one: a value of each curve, or of the
+  // first ones.
+  std::vector<double> values_at(uint64_t step) const;
 
   // After the last state, before findings are read.
   void conclude() {

@@ -125,7 +125,7 @@ std::vector<Seen> Golden::bonded(uint32_t cell, uint32_t id, const std::vector<S
 Golden::Sums Golden::meet(const graph::Round& round) {
   std::vector<RunError> faults;
   PairRun pairs(*program_, round, step_);
-  const size_t numbers = numbers_of_sums(round);
+  const auto numbers = static_cast<size_t>(round.numbers());
   Sums sums(cells_.size());
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     if (cells_[n].empty()) continue;
@@ -147,7 +147,7 @@ void Golden::finish(const graph::Round& round, const Sums& sums, std::vector<std
   std::vector<RunError> faults;
   FinishRun run(*program_, round, step_);
   const bool last = &round == &program_->rounds.back();
-  const size_t numbers = numbers_of_sums(round);
+  const auto numbers = static_cast<size_t>(round.numbers());
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     std::vector<Seen> own;
     for (const Particle& p : cells_[n]) own.push_back(seen(p));
@@ -189,12 +189,18 @@ Golden::Moving Golden::moved(const Particle& particle, FinishRun& run, size_t la
 }
 
 void Golden::step() {
+  // Rounds write fields and bonds where they stand: a step that fails puts back what it found.
+  std::pair before(fields_, bonds_);
   std::vector<std::vector<Moving>> moving(cells_.size());
-  for (const graph::Round& round : program_->rounds) finish(round, meet(round), moving);
-
-  // Migration: along x, then y, then z; those who stay keep their order, then come those from below, then
-  // from above.
-  for (int axis = 0; axis < 3; ++axis) migrate(axis, moving);
+  try {
+    for (const graph::Round& round : program_->rounds) finish(round, meet(round), moving);
+    // Migration: along x, then y, then z; those who stay keep their order, then come those from below, then
+    // from above.
+    for (int axis = 0; axis < 3; ++axis) migrate(axis, moving);
+  } catch (const RunError&) {
+    std::tie(fields_, bonds_) = std::move(before);
+    throw;
+  }
   for (uint32_t n = 0; n < cells_.size(); ++n) {
     cells_[n].clear();
     for (const Moving& m : moving[n]) cells_[n].push_back(m.particle);
@@ -243,8 +249,7 @@ State Golden::state() const {
     for (size_t f = 0; f < numbers; ++f) state.fields.push_back(fields_[row_of_id_[p.id] * numbers + f]);
   if (bonds_.empty()) return state;
   state.bonds = bonds_;
-  for (const uint64_t first : rows_->first)
-    state.bond_begin.push_back(first * static_cast<uint64_t>(program_->bond_numbers()));
+  state.bond_begin = begins_of(*rows_, program_->bond_numbers());
   return state;
 }
 

@@ -23,7 +23,8 @@ class Golden {
   Golden(graph::FixedProgram program, const Lattice& lattice, int capacity, const State& initial,
          std::shared_ptr<const graph::BondRows> rows = nullptr);
 
-  // Advances one step; throws RunError at the first step that breaks a width, a capacity or the lattice.
+  // Advances one step; throws RunError at the first step that breaks a width, a capacity or the lattice. The
+  // state before it stands.
   void step();
 
   State state() const;  // sorted by id

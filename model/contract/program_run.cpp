@@ -16,12 +16,6 @@ constexpr size_t kPairRoom = 128;  // lanes: the values of a pair law stay in th
 
 size_t at(int k) { return static_cast<size_t>(k); }
 
-std::vector<int> terms_of(const graph::Round& round) {
-  std::vector<int> terms;
-  for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
-  return terms;
-}
-
 // What is the same for all pairs of a particle, and for a particle alone.
 int64_t own_value(const FixedProgram& program, const Node& node, const Seen& own, uint64_t step) {
   const auto axis = at(node.axis);
@@ -81,12 +75,6 @@ void fill_input(const FixedProgram& program, const Node& node, const Seen& own, 
 
 }  // namespace
 
-size_t numbers_of_sums(const graph::Round& round) {
-  size_t numbers = 0;
-  for (const graph::Sum& sum : round.sums) numbers += sum.terms.size();
-  return numbers;
-}
-
 bool is_broken(const FixedProgram& program, const Seen& bond) {
   if (program.broken_at < 0) return false;
   const graph::Graph& graph = program.broken;
@@ -113,8 +101,7 @@ PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_
     early[at(n)] = true;
     (graph_.nodes[at(n)].op == Op::input ? early_inputs_ : early_).push_back(n);
   }
-  std::vector<int> outputs = terms_;
-  for (const graph::Write& write : round.bond_writes) outputs.push_back(write.node);
+  const std::vector<int> outputs = pair_outputs(round);
   const auto keep = [&](int n) { kept[at(n)] = early[at(n)] && graph_.nodes[at(n)].op != Op::constant; };
   for (const int n : outputs) keep(n);
   for (const int n : needed_by(graph_, outputs)) {
@@ -170,27 +157,21 @@ void PairRun::add_block(const Seen& own, std::span<const Seen> partners, std::sp
 }
 
 FinishRun::FinishRun(const FixedProgram& program, const graph::Round& round, uint64_t step)
-    : program_(program), round_(round), step_(step), block_(round.finish, kRoom) {
-  for (const graph::Sum& sum : round.sums) {
-    first_of_sum_.push_back(numbers_);
-    numbers_ += sum.terms.size();
-  }
-  std::vector<int> outputs;
-  for (const graph::Write& write : round.writes) outputs.push_back(write.node);
-  if (&round == &program.rounds.back())
-    for (const auto* nodes : {&program.motion.v, &program.motion.u, &program.motion.drift})
-      outputs.insert(outputs.end(), nodes->begin(), nodes->end());
-  nodes_ = needed_by(round.finish, outputs);
-}
+    : program_(program),
+      round_(round),
+      step_(step),
+      nodes_(needed_by(round.finish, finish_outputs(program, round))),
+      block_(round.finish, kRoom) {}
 
 void FinishRun::run(std::span<const Seen> particles, std::span<const int64_t> sums) {
   for (const int n : nodes_) {
     const Node& node = round_.finish.nodes[at(n)];
     if (node.op != Op::input) continue;
     int64_t* out = block_.values(n);
+    const bool sum = node.source == Source::sum;
+    const size_t numbers = at(round_.numbers()), place = sum ? at(round_.place(node.index) + node.axis) : 0;
     for (size_t k = 0; k < particles.size(); ++k)
-      out[k] = node.source == Source::sum ? sums[k * numbers_ + first_of_sum_[at(node.index)] + at(node.axis)]
-                                          : own_value(program_, node, particles[k], step_);
+      out[k] = sum ? sums[k * numbers + place] : own_value(program_, node, particles[k], step_);
   }
   block_.clear_faults();
   block_.run(nodes_, particles.size());

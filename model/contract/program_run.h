@@ -70,12 +70,7 @@ class FinishRun {
   const graph::Round& round_;
   uint64_t step_;
   std::vector<int> nodes_;
-  std::vector<size_t> first_of_sum_;
-  size_t numbers_ = 0;  // of all sums
   graph::Block<int64_t> block_;
 };
-
-// All components of all sums of a round.
-size_t numbers_of_sums(const graph::Round& round);
 
 }  // namespace cuboct

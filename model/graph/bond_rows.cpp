@@ -17,4 +17,10 @@ uint64_t BondRows::longest() const {
   return most;
 }
 
+std::vector<uint64_t> begins_of(const BondRows& rows, int numbers) {
+  std::vector<uint64_t> begins;
+  for (const uint64_t first : rows.first) begins.push_back(first * static_cast<uint64_t>(numbers));
+  return begins;
+}
+
 }  // namespace cuboct::graph

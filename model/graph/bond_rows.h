@@ -19,4 +19,7 @@ struct BondRows {
   uint64_t longest() const;  // row
 };
 
+// State::bond_begin, of so many numbers of each bond.
+std::vector<uint64_t> begins_of(const BondRows& rows, int numbers);
+
 }  // namespace cuboct::graph

@@ -80,6 +80,35 @@ void check_motion(const FixedProgram& program, const Graph& finish) {
 
 }  // namespace
 
+int Round::numbers() const { return place(static_cast<int>(sums.size())); }
+
+int Round::place(int sum) const {
+  size_t first = 0;
+  for (int k = 0; k < sum; ++k) first += sums[static_cast<size_t>(k)].terms.size();
+  return static_cast<int>(first);
+}
+
+std::vector<int> terms_of(const Round& round) {
+  std::vector<int> terms;
+  for (const Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
+  return terms;
+}
+
+std::vector<int> pair_outputs(const Round& round) {
+  std::vector<int> nodes = terms_of(round);
+  for (const Write& write : round.bond_writes) nodes.push_back(write.node);
+  return nodes;
+}
+
+std::vector<int> finish_outputs(const FixedProgram& program, const Round& round) {
+  std::vector<int> nodes;
+  for (const Write& write : round.writes) nodes.push_back(write.node);
+  if (&round == &program.rounds.back())
+    for (const auto* motion : {&program.motion.v, &program.motion.u, &program.motion.drift})
+      nodes.insert(nodes.end(), motion->begin(), motion->end());
+  return nodes;
+}
+
 int FixedProgram::numbers() const { return place(static_cast<int>(fields.size())); }
 int FixedProgram::place(int field) const { return place_in(fields, field); }
 int FixedProgram::bond_numbers() const { return bond_place(static_cast<int>(bonds.size())); }

@@ -60,6 +60,9 @@ struct Round {
   std::vector<Write> bond_writes = {};  // by the pair's graph
   Graph finish = {};
   std::vector<Write> writes = {};  // by the finish
+
+  int numbers() const;       // of all sums
+  int place(int sum) const;  // of a sum's first number among them
 };
 
 // Nodes of the last finish, one for each axis. x += drift, P+G fractional bits.
@@ -93,6 +96,12 @@ struct FixedProgram {
   int bond_place(int field) const;     // as place()
   bool symmetric(int constant) const;  // of a pair constant: types may be swapped
 };
+
+// The nodes that a round's graphs are run for: the components of all sums, in order; of a pair, these and
+// what it writes of its bond; of the finish, what it writes and, of the last round, the motion.
+std::vector<int> terms_of(const Round& round);
+std::vector<int> pair_outputs(const Round& round);
+std::vector<int> finish_outputs(const FixedProgram& program, const Round& round);
 
 // Inputs with the range that the program gives them.
 int read_apart(Builder& b, const FixedProgram& program, int axis);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t kMostLengths = 64;
 constexpr int kConstantBits = 46;
-constexpr int kSamples = 4096;  // of r, in which a truth changes once at most
+constexpr int kMostLooks = 200000;  // for where a truth changes
 
 // What the other end of each bond has.
 graph::Parity parity_of(const BondClasses& classes, const std::vector<int64_t>& values) {
@@ -26,6 +26,59 @@ graph::Parity parity_of(const BondClasses& classes, const std::vector<int64_t>& 
   }
   return even ? graph::Parity::even : odd ? graph::Parity::odd : graph::Parity::none;
 }
+
+// Where a truth of r2 changes, in units of r2.
+class Turn {
+ public:
+  using Truth = std::function<std::optional<bool>(int64_t low, int64_t high)>;
+  explicit Turn(Truth truth) : truth_(std::move(truth)) {}
+
+  bool at(int64_t r2) const { return truth_(r2, r2).value_or(false); }
+  // The last r2 up to `most` at which it is what it is at 1. InputError where it changes again.
+  int64_t last(int64_t most) const {
+    Search search{1, at(1), most};
+    look(search, 1, most);
+    return search.last;
+  }
+
+ private:
+  struct Search {
+    int64_t seen;  // so far
+    bool now;      // there
+    int64_t last;
+    int changes = 0, looks = 0;
+  };
+  // sqrt(r2) counts digits of a difference: what changes to and fro within two of them is not told apart.
+  void look(Search& search, int64_t low, int64_t high) const {
+    if (++search.looks > kMostLooks) refuse("cannot be shown to change once at most as a bond grows");
+    if (const auto all = truth_(low, high)) return see(search, high, *all);
+    const auto a = static_cast<int64_t>(std::sqrt(static_cast<double>(low))),
+               b = static_cast<int64_t>(std::sqrt(static_cast<double>(high)));
+    if (b - a < 2) return see(search, high, at(high));
+    const int64_t middle = (a + (b - a) / 2) * (a + (b - a) / 2);
+    look(search, low, middle);
+    look(search, middle, high);
+  }
+  void see(Search& search, int64_t r2, bool now) const {
+    if (now != search.now) {
+      if (++search.changes > 1) refuse("changes more than once as a bond grows");
+      int64_t low = search.seen, high = r2;
+      while (high - low > 1) {
+        const int64_t middle = low + (high - low) / 2;
+        (at(middle) == search.now ? low : high) = middle;
+      }
+      search.last = low;
+    }
+    search.seen = r2, search.now = now;
+  }
+  [[noreturn]] static void refuse(const std::string& what) {
+    throw InputError("a comparison in the rule " + what,
+                     "compare with each limit by itself; engine reference runs it as it is")
+        .about({"rule.file", "rule"});
+  }
+
+  Truth truth_;
+};
 
 }  // namespace
 
@@ -120,35 +173,17 @@ Scaled BondGraph::table(Integers& integers, const std::function<double(double, s
   return integers.looked_up(fitted, values.unit, argument, law);
 }
 
-Scaled BondGraph::threshold(const std::function<bool(double, size_t)>& truth) {
+Scaled BondGraph::threshold(const Truth& truth) {
   const int64_t most = b_.range(r2_).high;
-  const auto sample = [&](int k) {
-    return static_cast<int64_t>(std::pow(static_cast<double>(k) / kSamples, 2) * static_cast<double>(most));
-  };
-  const auto at = [&](int64_t r2, size_t length) {
-    return truth(static_cast<double>(r2) * frame_.unit2(), length);
-  };
   std::vector<int64_t> limit;  // the last r2 at which the truth is what it is at first
   std::vector<bool> first;
   for (size_t length = 0; length < frame_.from().size(); ++length) {
-    first.push_back(at(sample(1), length));
-    int64_t last = most;
-    int changes = 0;
-    for (int k = 1; k < kSamples; ++k) {
-      if (at(sample(k), length) == at(sample(k + 1), length)) continue;
-      int64_t low = sample(k), high = sample(k + 1);
-      while (high - low > 1) {
-        const int64_t middle = low + (high - low) / 2;
-        (at(middle, length) == at(sample(k), length) ? low : high) = middle;
-      }
-      last = low;
-      ++changes;
-    }
-    if (changes > 1)
-      throw InputError("a comparison in the rule changes more than once as a bond grows",
-                       "compare with each limit by itself; engine reference runs it as it is")
-          .about({"rule.file", "rule"});
-    limit.push_back(last);
+    const Turn turn([&](int64_t low, int64_t high) {
+      return truth({static_cast<double>(low) * frame_.unit2(), static_cast<double>(high) * frame_.unit2()},
+                   length);
+    });
+    first.push_back(turn.at(1));
+    limit.push_back(turn.last(most));
   }
   // Of all lengths the same truth holds up to the limit; one that never changes has none, or all.
   bool below = !first.empty() && first.front();

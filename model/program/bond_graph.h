@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "model/graph/program.h"
 #include "model/program/bond_classes.h"
 #include "model/program/integers.h"
+#include "model/program/real_range.h"
 
 namespace cuboct {
 
@@ -62,8 +64,10 @@ class BondGraph {
   }
   // f of r2 (m^2) and the length, in the window of that length.
   Scaled table(Integers& integers, const std::function<double(double, size_t)>& f, double unit);
-  // A truth of r2 and the length that changes once at most: at any r2. InputError if it changes more often.
-  Scaled threshold(const std::function<bool(double, size_t)>& truth);
+  // A truth of r2 (m^2) and the length that changes once at most: at any r2. InputError if it changes more
+  // often, or may: `truth` is what holds all over an interval of r2, where that can be told.
+  using Truth = std::function<std::optional<bool>(const RealRange& r2, size_t length)>;
+  Scaled threshold(const Truth& truth);
   // True. Where r2 is outside its window it is false, and if `counts` holds it is a fault.
   Scaled inside(int counts);
 

@@ -45,9 +45,10 @@ void Lowering::bonds(const Radial& radial, const Scaled& r2, BondGraph& bond) {
   windowed_.assign(graph_.nodes().size(), 0);
   for (NodeId id = 0; id < windowed_.size(); ++id) {
     const RealNode& node = graph_.at(id);
-    if (fixed(id) || radial.is_r2(id)) continue;
-    windowed_[id] = of_r(id) && !is_comparison(node.op);
-    for (size_t k = 0; !of_r(id) && k < static_cast<size_t>(arity(node.op)); ++k)
+    // A comparison of r is a threshold, and so are the parts of a truth that is made of such.
+    if (fixed(id) || radial.is_r2(id) || (of_r(id) && is_comparison(node.op))) continue;
+    windowed_[id] = of_r(id) && !is_truth(node.op);
+    for (size_t k = 0; k < static_cast<size_t>(arity(node.op)); ++k)
       if (windowed_[node.of[k]] != 0) windowed_[id] = 1;
   }
 }
@@ -94,7 +95,8 @@ Scaled Lowering::made(NodeId id, double unit) {
   if (radial_ != nullptr && radial_->is_r2(id)) return r2_;
   if (fixed(id)) return fixed_product({{id, false}});
   if (bond_ != nullptr && of_r(id) && is_comparison(node.op))
-    return bond_->threshold([&](double r2, size_t length) { return radial_->at(id, r2, length) != 0; });
+    return bond_->threshold(
+        [&](const RealRange& r2, size_t length) { return certain(radial_->over(id, r2, length)); });
   if (of_r(id) && !is_truth(node.op)) return table({{id, false}}, unit);
   const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
   switch (node.op) {

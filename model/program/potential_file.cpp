@@ -22,6 +22,7 @@ namespace {
 
 constexpr uint64_t kMostOfFile = uint64_t{64} << 20;
 constexpr size_t kMostElements = 32, kMostValues = 200000;  // of a table
+constexpr const char* kOnlyElement = "its element";         // of a funcfl file, which does not name it
 constexpr double kElectronvolt = 1.602176634e-19, kAngstrom = 1e-10;
 // A funcfl file has charges Z(r), and r times the energy of a pair is Z^2 of these eV angstrom: LAMMPS's
 // constants, for which such files are meant (pair_eam.cpp). Those of CODATA, 14.39964, change copper's energy
@@ -201,7 +202,7 @@ Functions setfl(PotentialText& file, const std::vector<FileWord>& names) {
 // LAMMPS takes all values but the last of each table (PairEAM::file2array): so do we.
 Functions funcfl(PotentialText& file, double lattice_constant) {
   Functions of;
-  of.elements = {"its element"};
+  of.elements = {kOnlyElement};
   of.lattice_constant = {lattice_constant};
   const FileWord at = file.here();
   of.grid = grid_of(file, file.line(), at);
@@ -245,7 +246,11 @@ std::vector<size_t> used(const std::string& path, const Functions& of,
   const auto fail = [&](const std::string& what, const std::string& hint) {
     throw InputError(what, hint).about({"element"});
   };
-  if (of.elements.size() == 1 && (elements.empty() || of.elements[0] == "its element")) return {0};
+  if (of.elements[0] == kOnlyElement && elements.size() > 1)
+    fail(fmt::format("{} is a funcfl file, which has one element, not {}", line_text(path),
+                     fmt::join(elements, ", ")),
+         "a setfl file has several, and what pairs of them do");
+  if (of.elements.size() == 1 && (elements.empty() || of.elements[0] == kOnlyElement)) return {0};
   if (elements.empty())
     fail(fmt::format("{} has several elements: {}", line_text(path), fmt::join(of.elements, ", ")),
          fmt::format("element = \"{}\"", of.elements[0]));

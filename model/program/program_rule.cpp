@@ -103,7 +103,7 @@ class ProgramTerms final : public RoundsTerms {
     finish_of(program_.rounds[round], begin, end);
   }
   void end(size_t round, bool keeps) override {
-    if (beyond_) throw std::runtime_error(beyond_->told());
+    if (beyond_) throw RoundsError(beyond_->told());
     publish(program_.rounds[round]);
     if (round + 1 < program_.rounds.size()) return;
     if (!program_.still)
@@ -135,7 +135,7 @@ class ProgramTerms final : public RoundsTerms {
         for (size_t k = 0; k < count; ++k) sum += block.of(*program_.particle_energy_at)[k];
       }
     }
-    if (beyond_) throw std::runtime_error(beyond_->told());
+    if (beyond_) throw RoundsError(beyond_->told());
     return sum;
   }
   // Half of the virial of the force's terms: the other half is of the other particle.

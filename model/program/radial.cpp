@@ -60,6 +60,22 @@ double Radial::at(NodeId id, double r2, size_t length) const {
   return values[id];
 }
 
+RealRange Radial::over(NodeId id, const RealRange& r2, size_t length) const {
+  std::vector<RealRange> values(id + 1);
+  for (NodeId k = 0; k <= id; ++k) {
+    const RealNode& node = graph_.at(k);
+    const auto single = [](double value) { return RealRange{value, value}; };
+    if (node.op == RealOp::constant) values[k] = single(node.value);
+    if (is_r2(k))
+      values[k] = r2;
+    else if (of_length_[k] != 0)
+      values[k] = single(fixed_at(k, classes_->of_length(length)));
+    else if (of_r_[k] != 0)
+      values[k] = ranged(node, values[node.of[0]], values[node.of[1]], values[node.of[2]]);
+  }
+  return values[id];
+}
+
 bool Radial::is_input(NodeId id, uint32_t axis) const {
   const RealNode& node = graph_.at(id);
   return node.op == RealOp::input && node.input == RealInput{RealSource::difference, axis};

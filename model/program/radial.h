@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "model/program/bond_classes.h"
+#include "model/program/real_range.h"
 
 namespace cuboct {
 
@@ -25,6 +26,8 @@ class Radial {
   bool is_of_r(NodeId id) const { return of_r_[id] != 0; }
   // Of these two. At r2, m^2, of bonds of this length.
   double at(NodeId id, double r2, size_t length = 0) const;
+  // Over all r2 of an interval.
+  RealRange over(NodeId id, const RealRange& r2, size_t length) const;
 
  private:
   bool is_square(NodeId id) const;

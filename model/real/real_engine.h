@@ -26,7 +26,7 @@ class RealEngine {
   virtual double largest_speed() const = 0;  // m/s, along an axis, since the start
   virtual const NearList& list() const = 0;  // of pairs: not of a rule of several rounds
   virtual uint64_t lists_made() const = 0;
-  // Of a rule of several rounds, at the state of now; null: pairs.
+  // Of a rule of several rounds, at the state of now, or RoundsError as of forces(); null: pairs.
   virtual const RoundsTerms* terms() const { return nullptr; }
   // The same without the work of its rounds: right in what goes on from step to step.
   virtual const RoundsTerms* kept_terms() const { return nullptr; }

@@ -29,27 +29,32 @@ class RoundsEngine final : public RealEngine {
         u_(body.u),
         type_(body.type),
         rounds_(*rounds_of(rule)),
+        remembers_(has_memory(rule)),
         terms_(rounds_.bind(rule, as_packed(body), periodic, options.threads)) {
     recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
-    evaluate(false);
+    refresh();
   }
 
   void step(uint64_t number) override {
     try {
       const double dt = rule_.dt;
       if (options_.integrator == Integrator::semi_implicit_euler) {
-        evaluate(true);
+        if (!fresh_ || remembers_) evaluate(true);
         move(dt, dt);
+        fresh_ = false;
+        // What keeps nothing is looked at as the next step will look: a step does not end in a state of which
+        // the rounds cannot be run.
+        if (!remembers_) evaluate(false);
       } else {
         move(dt / 2, dt);
         evaluate(true);
         move(dt / 2, 0);
+        fresh_ = false;
       }
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(fmt::format("step {}: {}; is dt too long?", number, error.what()));
     }
-    fresh_ = false;
   }
 
   void read(Body& body) const override { body.x = x_, body.v = v_, body.u = u_; }
@@ -94,7 +99,12 @@ class RoundsEngine final : public RealEngine {
     fresh_ = true;
   }
   void refresh() const {
-    if (!fresh_) evaluate(false);
+    if (fresh_) return;
+    try {
+      evaluate(false);
+    } catch (const std::runtime_error& error) {
+      throw RoundsError(error.what());
+    }
   }
 
   // v += a * kick with imposed velocities; then u and x by v * drift.
@@ -119,6 +129,7 @@ class RoundsEngine final : public RealEngine {
   std::vector<Vec3> x_, v_, u_;
   std::vector<uint8_t> type_;
   const RoundsRule& rounds_;  // of rule_
+  const bool remembers_;
   std::unique_ptr<RoundsTerms> terms_;
   mutable bool fresh_ = false;  // the terms are those of x_
   double fastest_ = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,13 @@
 #include "model/rules/declaration.h"
 
 namespace cuboct {
+
+// A state of which the rounds cannot be run: a position that is not finite, a table that ends before what it
+// is asked for.
+class RoundsError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // The rule on the particles of one body. A row is what one particle does: the rows of [begin, end) are done
 // in ascending order by one thread, others at the same time, and a row writes what is of its particle alone.
@@ -33,7 +41,7 @@ class RoundsTerms {
   // N, on each particle, by the last round.
   virtual const std::vector<Vec3>& force() const = 0;
 
-  // By what the last rounds left. J; Pa, tension positive, over `volume` (m^3).
+  // By what the last rounds left. J, or RoundsError; Pa, tension positive, over `volume` (m^3).
   virtual double energy() const = 0;
   virtual Mat3 stress(size_t particle, double volume) const = 0;
   // Of a particle's bonds the share that is broken, 0 to 1, and how many bonds there are (each once).

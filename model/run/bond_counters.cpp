@@ -5,10 +5,10 @@
 
 namespace cuboct {
 
-void add_bonds(Counters& counters, const Rule& rule, const RoundsTerms& terms, size_t particles) {
-  counters.emplace_back("bonds", static_cast<double>(terms.bonds()));
+Counters bond_counters(const Rule& rule, const RoundsTerms& terms, size_t particles) {
+  Counters counters{{"bonds", static_cast<double>(terms.bonds())}};
   // Bonds of the moment are whole or are not there.
-  if (!has_reference_bonds(rule)) return;
+  if (!has_reference_bonds(rule)) return counters;
   double damaged = 0, most = 0;
   for (size_t i = 0; i < particles; ++i) {
     const double damage = terms.damage(i);
@@ -16,6 +16,7 @@ void add_bonds(Counters& counters, const Rule& rule, const RoundsTerms& terms, s
   }
   counters.emplace_back("mean_damage", damaged / static_cast<double>(particles));
   counters.emplace_back("largest_damage", most);
+  return counters;
 }
 
 }  // namespace cuboct

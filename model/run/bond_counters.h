@@ -7,7 +7,7 @@
 
 namespace cuboct {
 
-// Appends "bonds" and, where bonds can be damaged, "mean_damage" and "largest_damage" of `particles`.
-void add_bonds(Counters& counters, const Rule& rule, const RoundsTerms& terms, size_t particles);
+// "bonds" and, where bonds can be damaged, "mean_damage" and "largest_damage" of `particles`.
+Counters bond_counters(const Rule& rule, const RoundsTerms& terms, size_t particles);
 
 }  // namespace cuboct

@@ -55,6 +55,8 @@ class Engine {
   virtual void advance(uint64_t steps, std::vector<uint64_t>* hashes = nullptr) = 0;
 
   virtual uint64_t hash() = 0;  // of fixed engines
+  // Frames, readings and counts that need the rounds of a state throw RoundsError (model/rules/rounds_rule.h)
+  // where those cannot be run.
   // With `forces`, a frame in real numbers holds the pair forces.
   virtual RunState frame(bool forces) = 0;
   // The same in integers, of an engine that holds them and shows real numbers.
@@ -69,7 +71,9 @@ class Engine {
   virtual std::vector<PhaseSpan> phase_times() { return {}; }
   // Host time of the steps, where the engine knows it better than who waits for them. s
   virtual std::optional<double> seconds() { return std::nullopt; }
+  // Of the work of all steps; and of the state, such as its broken bonds.
   virtual Counters counters() = 0;
+  virtual Counters counters_of_state() { return {}; }
   virtual Notes notes() { return {}; }
 
   // Of engines whose state is saved: the particles in the order in which a new engine is to take them.

@@ -21,6 +21,7 @@ class IntegerEngine {
   // Particles by cell, then slot.
   virtual void for_each_slot(const std::function<void(const Particle&)>& see) const = 0;
   virtual Counters counters() const { return {}; }
+  virtual Notes notes() const { return {}; }  // after counters()
 };
 
 // From a state whose particles take the slots of their cells in its order, with their fields in the same.

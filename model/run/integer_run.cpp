@@ -8,7 +8,6 @@
 #include "model/base/error.h"
 #include "model/program/program_rule.h"
 #include "model/real/real_engine.h"
-#include "model/run/bond_counters.h"
 
 namespace cuboct {
 namespace {
@@ -139,14 +138,14 @@ void IntegerRun::renew() {
   engine_->recall(kept);
 }
 
-Counters IntegerRun::counters() {
-  Counters counters = program_->counters();
-  if (!setting_.program.rows) return counters;
-  body();
-  add_bonds(counters, scene_.rule, *engine_->terms(), body_.size());
-  return counters;
+Counters IntegerRun::counters_of_state() {
+  return setting_.program.rows ? RoundsRun::counters_of_state() : Counters();
 }
 
-Notes IntegerRun::notes() { return {{"rule", rounds_of(scene_.rule)->declaration().name}}; }
+Notes IntegerRun::notes() {
+  Notes notes = program_->notes();
+  notes.emplace_back("rule", rounds_of(scene_.rule)->declaration().name);
+  return notes;
+}
 
 }  // namespace cuboct

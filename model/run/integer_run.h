@@ -31,7 +31,8 @@ class IntegerRun final : public RoundsRun {
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override;
   uint64_t hash() override { return program_->hash(); }
   Momentum momentum() override;
-  Counters counters() override;
+  Counters counters() override { return program_->counters(); }
+  Counters counters_of_state() override;
   Notes notes() override;
   RunState integers() override { return program_->state(); }
   void for_each_slot(const std::function<void(const Particle&)>& see) override {

@@ -72,12 +72,14 @@ class Loop {
   const std::vector<uint64_t>& energy_steps() const {
     return request_.energy_steps.empty() ? request_.probes : request_.energy_steps;
   }
+  RunState frame();
   void keep();
   void journal(const std::function<void(Journal&)>& write);
   void save();
   bool write_state();
   bool save_is_due() const;
   void go_back_to(uint64_t step);
+  void guarded(const std::function<void()>& part);
   void finish();
   void total();
   void look_for_end();
@@ -229,7 +231,7 @@ void Loop::record() {
     measure({.probes = true, .energies = energies}, among(looks_, step));
     look_for_end();
     if (leads() && journal_)
-      if (const std::vector<double> values = meter_.latest(); !values.empty())
+      if (const std::vector<double> values = meter_.values_at(step); !values.empty())
         journal([&](Journal& to) { to.sample(step, values); });
   }
   if (among(request_.frames, step)) keep();
@@ -259,11 +261,13 @@ void Loop::measure(const Meter::Parts& parts, bool look) {
   if (leads()) meter_.add(reading, parts);
 }
 
+RunState Loop::frame() { return request_.integers ? engine_->integers() : engine_->frame(request_.forces); }
+
 void Loop::keep() {
-  RunState frame = request_.integers ? engine_->integers() : engine_->frame(request_.forces);
+  RunState kept = frame();
   if (!leads()) return;
-  journal([&](Journal& to) { to.frame(frame); });
-  give(request_, std::move(frame), trace_);
+  journal([&](Journal& to) { to.frame(kept); });
+  give(request_, std::move(kept), trace_);
 }
 
 // A journal that cannot be written ends the checkpoints, not the run; the last checkpoint holds.
@@ -296,7 +300,8 @@ void Loop::advance(uint64_t steps) {
     engine_->advance(steps, hashes_come() ? &trace_.state_hash : nullptr);
   } catch (...) {
     trace_.seconds += since(begin);
-    if (kind_.keeps_state) done();
+    lost_ = !kind_.keeps_state;
+    if (!lost_) done();
     throw;
   }
   trace_.seconds += since(begin);
@@ -334,7 +339,8 @@ void Loop::go() {
 
 void Loop::show() {
   if (leads())
-    log_.at(trace_.steps_done, among(request_.probes, trace_.steps_done), [this] { return meter_.latest(); });
+    log_.at(trace_.steps_done, among(request_.probes, trace_.steps_done),
+            [this] { return meter_.values_at(trace_.steps_done); });
 }
 
 bool Loop::save_is_due() const {
@@ -396,28 +402,55 @@ void Loop::go_back_to(uint64_t step) {
   engine_->advance(step - engine_->step_count());
 }
 
-// The last state is part of every answer, also of a run that ended early: its hash, its frame, its energies.
+// A step that cannot be done ends the trace, and so does a state that cannot be read. Of several reasons the
+// first is told.
+void Loop::guarded(const std::function<void()>& part) {
+  const auto stop = [&](const StopReason& reason) {
+    if (!trace_.stop) trace_.stop = reason;
+  };
+  try {
+    part();
+  } catch (const RunError& error) {
+    stop({error.fault, error.step, error.cell, error.particle, error.number, error.what()});
+  } catch (const StepError& error) {
+    stop(error.reason);
+  } catch (const RoundsError& error) {
+    const uint64_t step = engine_ ? engine_->step_count() : 0;
+    stop({Fault::none, step, 0, 0, 0, fmt::format("step {}: {}", step, error.what())});
+  }
+}
+
+// The last state is part of every answer, also of a run that ended early: its hash, its frame, its energies,
+// but for what cannot be read of it.
 void Loop::finish() {
   const uint64_t last = trace_.steps_done;
-  const bool frame = request_.last && !request_.frames.empty() && !among(request_.frames, last);
+  const bool kept = request_.last && !request_.frames.empty() && !among(request_.frames, last);
   const bool probes = request_.last && request_.energies && !among(request_.probes, last);
   const bool sample = request_.last && request_.energies && !among(energy_steps(), last);
   const bool look = request_.last && meter_.watch() && looked_ != last;
   const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
   const bool bonds = request_.last && !request_.frames.empty() &&
                      (has_reference_bonds(scene_.rule) || has_memory(scene_.rule));
-  if (lost_ && (sample || look || hash || frame || bonds || request_.totals)) go_back_to(last);
+  const bool counts = rounds_of(scene_.rule) != nullptr && (request_.last || !lost_);
+  if (lost_ && (sample || look || hash || kept || bonds || counts || request_.totals)) go_back_to(last);
   {
     const Timed timed({&trace_.seconds, &besides_});
     if (hash) trace_.state_hash.push_back(engine_->hash());
-    if (sample || look) measure({.probes = probes, .energies = sample}, look || sample);
-    if (frame) {
-      RunState last_frame = engine_->frame(request_.forces);
+    guarded([&] {
+      if (sample || look) measure({.probes = probes, .energies = sample}, look || sample);
+    });
+    guarded([&] {
+      if (!kept) return;
+      RunState last_frame = frame();
       if (leads()) give(request_, std::move(last_frame), trace_);
-    }
+    });
   }
+  guarded([&] {
+    if (!counts) return;
+    for (const auto& counter : engine_->counters_of_state()) trace_.counters.push_back(counter);
+  });
   if (bonds) trace_.bonds = engine_->saved_body()->bonds->kept;
-  if (leads()) log_.end(last, sample || among(request_.probes, last), [this] { return meter_.latest(); });
+  if (leads()) log_.end(last, sample || among(request_.probes, last), [&] { return meter_.values_at(last); });
   trace_.curves = meter_.curves();
   meter_.conclude();
   if (const Watch* watch = meter_.watch()) {
@@ -446,7 +479,7 @@ Recorded Loop::run() {
   if (!kind_.saves && (save_plan_.resume || !save_plan_.path.empty()))
     throw InputError(fmt::format("the {} engine leaves no checkpoints", kind_.name),
                      kind_.name == "reference" ? "with --integrator euler it does" : "");
-  try {
+  guarded([&] {
     saved_time_ = Clock::now();
     if (save_plan_.resume)
       resume();
@@ -455,13 +488,7 @@ Recorded Loop::run() {
     go();
     result_.interrupted = trace_.steps_done < request_.steps && !over_;
     if (result_.interrupted && !save_plan_.path.empty()) save();
-  } catch (const RunError& error) {
-    trace_.stop = StopReason{error.fault, error.step, error.cell, error.particle, error.number, error.what()};
-    lost_ = !kind_.keeps_state;
-  } catch (const StepError& error) {
-    trace_.stop = error.reason;
-    lost_ = !kind_.keeps_state;
-  }
+  });
   if (!engine_) return std::move(result_);  // not even the initial state could be held
   trace_.counters = engine_->counters();    // of the run: another engine may make the last state again
   finish();

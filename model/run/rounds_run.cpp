@@ -113,10 +113,11 @@ Momentum RoundsRun::momentum() {
 
 double RoundsRun::largest_speed() { return engine_->largest_speed() * scene_.rule.dt / cell_edge_; }
 
-Counters RoundsRun::counters() {
-  Counters counters{{"threads", options_->threads}};
-  add_bonds(counters, scene_.rule, *engine_->terms(), body_.size());
-  return counters;
+Counters RoundsRun::counters() { return {{"threads", options_->threads}}; }
+
+Counters RoundsRun::counters_of_state() {
+  body();
+  return bond_counters(scene_.rule, *engine_->terms(), body_.size());
 }
 
 Notes RoundsRun::notes() {
@@ -128,7 +129,7 @@ Notes RoundsRun::notes() {
 
 const Body* RoundsRun::saved_body() {
   body();
-  keep_bonds(body_, *engine_->terms());
+  keep_bonds(body_, *engine_->kept_terms());
   return &body_;
 }
 

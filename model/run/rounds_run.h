@@ -33,6 +33,7 @@ class RoundsRun : public Engine {
   Momentum momentum() override;
   double largest_speed() override;
   Counters counters() override;
+  Counters counters_of_state() override;
   Notes notes() override;
   const Body* saved_body() override;
   EngineMemory memory() override;

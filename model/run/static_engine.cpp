@@ -150,12 +150,14 @@ double StaticEngine::largest_speed() {
 }
 
 Counters StaticEngine::counters() {
-  Counters counters{{"threads", threads_},
-                    {"load_steps", static_cast<double>(load_steps_)},
-                    {kEvaluations, static_cast<double>(evaluations_)}};
-  if (const RoundsTerms* terms = balance_.reference().terms())
-    add_bonds(counters, scene_.rule, *terms, balance_.body().size());
-  return counters;
+  return {{"threads", threads_},
+          {"load_steps", static_cast<double>(load_steps_)},
+          {kEvaluations, static_cast<double>(evaluations_)}};
+}
+
+Counters StaticEngine::counters_of_state() {
+  const RoundsTerms* terms = balance_.reference().terms();
+  return terms ? bond_counters(scene_.rule, *terms, balance_.body().size()) : Counters();
 }
 
 Notes StaticEngine::notes() {

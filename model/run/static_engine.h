@@ -37,6 +37,7 @@ class StaticEngine : public Engine {
   Momentum momentum() override { return {}; }
   double largest_speed() override;
   Counters counters() override;
+  Counters counters_of_state() override;
   Notes notes() override;
   const Body* saved_body() override { return &balance_.body(); }
   EngineMemory memory() override;

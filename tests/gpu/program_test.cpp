@@ -346,9 +346,12 @@ TEST_F(GpuProgram, SaysWhatIsMissing) {
 }
 
 TEST_F(GpuProgram, SaysWhereNoEnergyCouldBeMeasured) {
-  const Trace trace = run("joules", {kBlock, "--steps", "2", "--engine", "gpu", "--joules"});
-  EXPECT_NE(lines_with(answer_.out, "not measured: "), "");
-  for (const auto& [name, value] : trace.counters) EXPECT_EQ(name.find("joules"), std::string::npos) << value;
+  for (const std::string scene : {kBlock.c_str(), "scenes/rules/heat.toml"}) {
+    const Trace trace = run("joules", {scene, "--steps", "2", "--engine", "gpu", "--joules", "--force"});
+    EXPECT_NE(lines_with(answer_.out, "not measured: "), "") << scene;
+    for (const auto& [name, value] : trace.counters)
+      EXPECT_EQ(name.find("joules"), std::string::npos) << value;
+  }
 }
 
 TEST_F(GpuProgram, StandsAlone) {

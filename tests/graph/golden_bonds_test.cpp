@@ -107,9 +107,11 @@ TEST(GoldenBonds, ThatCountAndAreNotMetAreAFaultUnlessTheyAreBroken) {
     State start = three(500);
     start.bonds = {0, 0, wear, wear};
     Golden golden(worn(), lattice, 4, start, chain());
+    State before;
     try {
-      for (int k = 0; k < 5; ++k) golden.step();
+      for (int k = 0; k < 5; ++k) before = golden.state(), golden.step();
     } catch (const RunError& e) {
+      EXPECT_EQ(golden.state(), before);  // bonds of others were written
       EXPECT_EQ(e.number, 2);
       EXPECT_EQ(e.particle, 1u);
       EXPECT_EQ(e.cell, 1u);

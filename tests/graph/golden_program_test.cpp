@@ -156,10 +156,13 @@ TEST(GoldenProgram, ReportsTheFaultOfAFinish) {
   State start = warm(3);
   for (size_t k = 1; k < start.fields.size(); k += 2)
     start.fields[k] = (k % 4 == 1 ? 1 : -1) * ((1 << 23) - 1);
+  Golden golden(heat(1), lattice, kRingCapacity, start);
+  const State before = golden.state();
   try {
-    Golden(heat(1), lattice, kRingCapacity, start).step();
+    golden.step();
     FAIL();
   } catch (const RunError& e) {
+    EXPECT_EQ(golden.state(), before);  // the first round wrote how many neighbours there are
     EXPECT_EQ(e.fault, Fault::sum);
     EXPECT_FALSE(fits(e.number, 24));
   }

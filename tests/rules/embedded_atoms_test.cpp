@@ -133,6 +133,13 @@ TEST(PotentialFile, OfAStrangerEndsInAnErrorAtItsPlace) {
   says(with("-1 -2", "-1 1e400"), "7:6: the embedding energy of Aa, value 3 of 6 must be a number");
   says(with(" +3.0\n", ""), "15:10: the file ends in the pairs of Bb and Bb, value 6 of 6");
   EXPECT_EQ(refusal_of(with("-1 -2", "-1 1e-400")), "none");
+  const std::string funcfl =
+      "a comment\n29 63.55 3.615 FCC\n6 0.5 7 0.1 0.5\n0 -1 -2 -3 -4 -5\n2 2 2 2 2 2 2\n6 5 4 3 2 1 0\n";
+  EXPECT_EQ(refusal_of(funcfl), "none");
+  const std::string several = refusal_of(funcfl, {"Aa", "Bb"});
+  EXPECT_NE(several.find("is a funcfl file, which has one element, not Aa, Bb\n  hint: a setfl file has"),
+            std::string::npos)
+      << several;
   EXPECT_NE(refusal_of(kSetfl, {"Cc"}).find("has no element 'Cc'"), std::string::npos);
   EXPECT_NE(refusal_of(kSetfl, {}).find("has several elements: Aa, Bb"), std::string::npos);
 }

@@ -219,6 +219,27 @@ TEST(IntegerBonds, WhatIntegersDoNotHoldIsRefused) {
        "begins as another number at either end");
   told("bond.s.kind = \"truth\"\n[[rule.round]]\nbond.s = \"sin(20 * r / r0) > 0.5\"\n",
        "changes more than once as a bond grows");
+  // For 4e-5 mm alone, wherever that is; and what never changes, of which no interval of r says so.
+  for (const char* where : {"0.31", "0.99317", "1.01", "1.24"})
+    told("bond.s.kind = \"truth\"\n[[rule.round]]\nbond.s = \"abs(r - " + std::string(where) +
+             " * r0) < 2e-5 * r0\"\n",
+         "changes more than once as a bond grows");
+  told("bond.s.kind = \"truth\"\n[[rule.round]]\nbond.s = \"(r - r0) * r - (r - r0) * r < 1e-30 * r0^2\"\n",
+       "cannot be shown to change once at most as a bond grows");
+}
+
+// A limit is exact: the truth changes from a number of r^2 to the next.
+TEST(IntegerBonds, AThresholdOfAnyFormulaIsTaken) {
+  const std::string own =
+      small_block("run = { dt = \"10 ns\", steps = 10 }\n") +
+      "[rule]\nbonds = \"reference\"\nreach = \"1.2 * pitch\"\nstill = true\n"
+      "bond.s.kind = \"truth\"\nparticle.a = { range = [0, 20] }\n[[rule.round]]\nsum.b = "
+      "{ is = \"1\", when = \"s\" }\nfinish.a = \"b\"\nbond.s = ";
+  for (const char* formula : {"log(r / r0) < 0.1", "exp(-r / r0) > 0.33 and r^3 < 2 * r0^3", "r0 / r > 0.9",
+                              "min(r, r0) * 2 >= 2 * r0", "sin(r / r0 / 4) < 0.22", "cos(r / r0) > 0.5",
+                              "(r / r0)^0.7 < 1.1", "sqrt(r^2 - 0.9 * r0^2) > 0.4 * r0",
+                              "select(r < 1.1 * r0, 1, 0) > 0.5", "max(r - r0, 0.5 * r0) < 0.6 * r0"})
+    EXPECT_EQ(integer_refusal(own + "\"" + formula + "\"\n"), "none") << formula;
 }
 
 }  // namespace

@@ -209,7 +209,7 @@ TEST(LpsStatic, BondsGiveWayAtRest) {
   RoundsRun motion(weak, body, {}, 1e-3);
   motion.advance(1, nullptr);
   EXPECT_GT(counter(tears, "mean_damage"), 0);
-  for (const auto& [name, value] : motion.counters())
+  for (const auto& [name, value] : motion.counters_of_state())
     if (name == "mean_damage") {
       EXPECT_EQ(value, counter(tears, "mean_damage"));
     }

@@ -267,7 +267,10 @@ TEST_P(EveryEngine, IsLookedAtWhereItAllowsAndAtItsEnd) {
 }
 
 TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
-  for (const auto& [bed, steps] : {std::pair{bed_of("scenes/boards/grips.toml"), 20}, {torn(), 12}})
+  Bed unprobed = bed_of("scenes/boards/grips.toml");
+  unprobed.scene.probes.clear();
+  for (const auto& [bed, steps] :
+       {std::pair{bed_of("scenes/boards/grips.toml"), 20}, {torn(), 12}, {unprobed, 20}})
     for (const std::vector<uint64_t>& energies : {{}, std::vector<uint64_t>{0, 12}})
       go_on(bed, static_cast<uint64_t>(steps), energies);
 }
@@ -275,6 +278,7 @@ TEST_P(EveryEngine, GoesOnFromItsCheckpointOrSaysThatItLeavesNone) {
 // Killed, as far as files can tell, between a checkpoint and the next.
 void EveryEngine::go_on(const Bed& bed, uint64_t steps, const std::vector<uint64_t>& energies) {
   RunRequest request = everything(steps);
+  request.probes = every_so_often(3, steps);
   request.energy_steps = energies;
   const std::string path = fmt::format("{}run_tests.{}.{}", testing::TempDir(), GetParam().name, getpid());
   remove_checkpoint(path);

@@ -97,8 +97,7 @@ class RandomPairs {
 
 Sums sums_for(const graph::Round& round) {
   Sums sums;
-  for (const graph::Sum& sum : round.sums)
-    for (size_t n = 0; n < sum.terms.size(); ++n) sums.emplace_back(kParticles);
+  for (int n = 0; n < round.numbers(); ++n) sums.emplace_back(kParticles);
   return sums;
 }
 

@@ -38,9 +38,13 @@ uint8_t image(const Particles& particles, uint32_t own, uint32_t other, const st
 
 bool BondSpace::meets(const std::array<double, 3>& own, std::array<double, 3>& apart) const {
   for (size_t a = 0; a < 3; ++a) {
-    if (period[a] > 0) apart[a] -= std::round(apart[a] / period[a]) * period[a];
-    const double cells = std::floor((own[a] + apart[a]) / cell) - std::floor(own[a] / cell);
-    if (std::abs(cells) > 1) return false;
+    const auto cells = [&] { return std::floor((own[a] + apart[a]) / cell) - std::floor(own[a] / cell); };
+    if (period[a] > 0) {
+      apart[a] -= std::round(apart[a] / period[a]) * period[a];
+      // In a ring of three the image in a neighbouring cell may be farther away than another.
+      if (std::abs(cells()) > 1) apart[a] -= std::copysign(period[a], apart[a]);
+    }
+    if (std::abs(cells()) > 1) return false;
   }
   return true;
 }

@@ -12,30 +12,16 @@ using graph::Node;
 using graph::Op;
 using graph::Source;
 
-std::vector<int> written(const graph::FixedProgram& program, const graph::Round& round) {
-  std::vector<int> nodes;
-  for (const graph::Write& write : round.writes) nodes.push_back(write.node);
-  if (&round == &program.rounds.back())
-    for (const auto* motion : {&program.motion.v, &program.motion.u, &program.motion.drift})
-      nodes.insert(nodes.end(), motion->begin(), motion->end());
-  return nodes;
-}
-
 }  // namespace
 
 FinishPass::FinishPass(const graph::FixedProgram& program, const graph::Round& round, const KernelRule& rule)
     : program_(program),
       round_(round),
       rule_(rule),
-      nodes_(needed_by(round.finish, written(program, round))),
-      block_(round.finish, {nodes_}, written(program, round)) {
+      nodes_(needed_by(round.finish, finish_outputs(program, round))),
+      block_(round.finish, {nodes_}, finish_outputs(program, round)) {
   for (const int n : nodes_)
     if (round.finish.nodes[static_cast<size_t>(n)].op == Op::input) inputs_.push_back(n);
-  size_t numbers = 0;
-  for (const graph::Sum& sum : round.sums) {
-    first_of_sum_.push_back(numbers);
-    numbers += sum.terms.size();
-  }
 }
 
 bool FinishPass::run(Particles& particles, const Block& block, const Active& active, uint64_t step,
@@ -101,7 +87,8 @@ void FinishPass::fill(const Particles& particles, uint32_t block_begin, uint32_t
     };
     switch (node.source) {
       case Source::sum:
-        std::copy_n(sums[first_of_sum_[index] + axis].data() + (begin - block_begin), lanes, out);
+        std::copy_n(sums[static_cast<size_t>(round_.place(node.index)) + axis].data() + (begin - block_begin),
+                    lanes, out);
         break;
       case Source::own_x:
         each([&](uint32_t p) {

@@ -33,7 +33,6 @@ class FinishPass {
   const graph::Round& round_;
   const KernelRule& rule_;
   std::vector<int> nodes_, inputs_;
-  std::vector<size_t> first_of_sum_;
   VectorBlock block_;
 };
 

@@ -24,10 +24,7 @@ std::vector<int> inputs_of(const Graph& graph, const std::vector<int>& nodes) {
   return inputs;
 }
 
-PairParts::PairParts(const graph::Round& round) {
-  for (const graph::Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());
-  outputs = terms;
-  for (const graph::Write& write : round.bond_writes) outputs.push_back(write.node);
+PairParts::PairParts(const graph::Round& round) : terms(terms_of(round)), outputs(pair_outputs(round)) {
   const std::vector<int> all = needed_by(round.pair, outputs);
   std::vector<int> roots{round.when};
   for (const int n : inputs_of(round.pair, all))
@@ -43,7 +40,7 @@ bool is_mutual(const graph::Round& round) {
   const auto mutual = [&](int node) {
     return is_odd(parity[static_cast<size_t>(node)]) || is_even(parity[static_cast<size_t>(node)]);
   };
-  return mutual(round.when) && std::ranges::all_of(PairParts(round).terms, mutual);
+  return mutual(round.when) && std::ranges::all_of(terms_of(round), mutual);
 }
 
 }  // namespace cuboct::emu

@@ -29,11 +29,6 @@ Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule, const
                const graph::BondRows* rows)
     : program_(program), rule_(rule), once_(std::ranges::all_of(program.rounds, is_mutual)) {
   if (rows != nullptr) {
-    // In a ring of three cells all are neighbours, and a partner is met two cells away.
-    if (std::ranges::count(lattice.period(), 3) > 0)
-      throw InputError("a box of three cells along an axis: bonds meet around it in golden alone",
-                       "engine golden, or a longer box")
-          .about({"box.cells", "box.size", "box"});
     space_ = {rows, rule.cell, {}};
     for (size_t a = 0; a < 3; ++a) space_.period[a] = lattice.period()[a] * rule.cell;
   }
@@ -82,9 +77,7 @@ void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
         part.finishes.push_back(std::make_unique<FinishPass>(program_, round, rule_));
       }
       part.sums[k].clear();
-      for (const graph::Sum& sum : round.sums)
-        for (size_t n = 0; n < sum.terms.size(); ++n)
-          part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
+      for (int n = 0; n < round.numbers(); ++n) part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
     }
   }
   moves_.axes = static_cast<int>(program_.motion.v.size());
