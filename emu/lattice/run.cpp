@@ -16,6 +16,15 @@
 namespace cuboct::emu {
 namespace {
 
+bool leads(const Ranks* ranks) { return ranks == nullptr || ranks->rank() == 0; }
+
+std::pair<bool, bool> all_agree(Ranks* ranks, bool stop, bool save) {
+  if (ranks == nullptr) return {stop, save};
+  std::array<uint8_t, 2> asked{stop, save};
+  ranks->any(asked);
+  return {asked[0] != 0, asked[1] != 0};
+}
+
 int readers(const LatticeOptions& options) { return options.threads > 0 ? options.threads : usable_cores(); }
 
 class Runner : public StateEngine {
@@ -35,8 +44,8 @@ class Runner : public StateEngine {
     engine_->for_each_slot(see);
   }
   EngineMemory memory() override;
-  bool leads() const override { return !ranks_ || ranks_->rank() == 0; }
-  std::pair<bool, bool> agreed(bool stop, bool save) override;
+  bool leads() const override { return emu::leads(ranks_); }
+  std::pair<bool, bool> agreed(bool stop, bool save) override { return all_agree(ranks_, stop, save); }
 
  protected:
   State make_state() override { return engine_->state(); }
@@ -119,13 +128,6 @@ Reading Runner::read(const Asked& asked) {
   return reading;
 }
 
-std::pair<bool, bool> Runner::agreed(bool stop, bool save) {
-  if (!ranks_) return {stop, save};
-  std::array<uint8_t, 2> asked{stop, save};
-  ranks_->any(asked);
-  return {asked[0] != 0, asked[1] != 0};
-}
-
 EngineMemory Runner::memory() {
   const LatticeCounters& now = engine_->counters();
   return {{earlier_[0] + now.list_builds, earlier_[1] + now.node_steps, earlier_[2] + now.quiet_node_steps},
@@ -151,7 +153,8 @@ class IntegerRunner : public IntegerEngine {
   IntegerRunner(const Plan& plan, const State& from, const LatticeOptions& options)
       : engine_(
             plan, from.step, static_cast<uint32_t>(from.particles.size()),
-            [&](uint32_t k) { return from.particles[k]; }, options, by_id(from)) {}
+            [&](uint32_t k) { return from.particles[k]; }, options, by_id(from)),
+        ranks_(options.ranks) {}
 
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
     for (; steps > 0; --steps) {
@@ -173,6 +176,8 @@ class IntegerRunner : public IntegerEngine {
             {"compiled_steps", static_cast<double>(counts.compiled_steps)},
             {"threads", engine_.threads()}};
   }
+  bool leads() const override { return emu::leads(ranks_); }
+  std::pair<bool, bool> agreed(bool stop, bool save) override { return all_agree(ranks_, stop, save); }
 
  private:
   static ProgramNumbers by_id(const State& state) {
@@ -185,6 +190,7 @@ class IntegerRunner : public IntegerEngine {
   }
 
   LatticeEngine engine_;
+  Ranks* const ranks_;
 };
 
 }  // namespace

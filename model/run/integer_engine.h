@@ -21,6 +21,9 @@ class IntegerEngine {
   // Particles by cell, then slot.
   virtual void for_each_slot(const std::function<void(const Particle&)>& see) const = 0;
   virtual Counters counters() const { return {}; }
+  // As Engine's: of processes that share a scene one has the whole state, the others an empty one.
+  virtual bool leads() const { return true; }
+  virtual std::pair<bool, bool> agreed(bool stop, bool save) { return {stop, save}; }
   virtual Notes notes() const { return {}; }  // after counters()
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <exception>
+#include <optional>
 
 #include "model/base/error.h"
 #include "model/program/program_rule.h"
@@ -102,9 +104,33 @@ Momentum IntegerRun::momentum() {
   return {cuboct::momentum(setting_.fixed, program_->state()), RoundsRun::momentum().real};
 }
 
+template <typename Work>
+auto IntegerRun::together(const Work& work) {
+  std::optional<decltype(work())> made;
+  std::exception_ptr error;
+  try {
+    made = work();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  const bool failed = agreed(error != nullptr, false).first;
+  if (error) std::rethrow_exception(error);
+  if (failed) throw RoundsError("the process that leads cannot read the state");
+  return std::move(*made);
+}
+
+Reading IntegerRun::read(const Asked& asked) {
+  return together([&] { return RoundsRun::read(asked); });
+}
+
+RunState IntegerRun::frame(bool forces) {
+  return together([&] { return RoundsRun::frame(forces); });
+}
+
 // Places, velocities and what the rule keeps of each particle, as its terms in doubles take them.
 void IntegerRun::renew() {
   const State state = program_->state();
+  if (!leads()) return;
   body_ = with_bonds(scene_.rule, to_real(state, setting_.fixed, setting_.lattice, setting_.origin), body_);
   const IntegerProgram& program = setting_.program;
   std::vector<uint64_t> kept = engine_->terms()->memory();

@@ -35,6 +35,10 @@ class IntegerRun final : public RoundsRun {
   Counters counters_of_state() override;
   Notes notes() override;
   RunState integers() override { return program_->state(); }
+  Reading read(const Asked& asked) override;
+  RunState frame(bool forces) override;
+  bool leads() const override { return program_->leads(); }
+  std::pair<bool, bool> agreed(bool stop, bool save) override { return program_->agreed(stop, save); }
   void for_each_slot(const std::function<void(const Particle&)>& see) override {
     program_->for_each_slot(see);
   }
@@ -43,6 +47,9 @@ class IntegerRun final : public RoundsRun {
 
  private:
   void renew() override;
+  // What the process that leads cannot read, no other goes on from.
+  template <typename Work>
+  auto together(const Work& work);
   ProgramSetting setting_;
   std::unique_ptr<IntegerEngine> program_;
 };

@@ -77,6 +77,7 @@ class Loop {
   void journal(const std::function<void(Journal&)>& write);
   void save();
   bool write_state();
+  void give_state();
   bool save_is_due() const;
   void go_back_to(uint64_t step);
   void guarded(const std::function<void()>& part);
@@ -354,9 +355,16 @@ void Loop::save() {
   if (leads())
     failed = !write_state();
   else
-    engine_->for_each_slot([](const Particle&) {});  // they are gathered where they are written
+    give_state();
   result_.left_checkpoint = !engine_->agreed(failed, false).first;
   saved_ = saved_ || result_.left_checkpoint;
+}
+
+// To the process that writes it: what write_state() asks the engine for, in its order.
+void Loop::give_state() {
+  engine_->largest_speed();
+  engine_->memory();
+  engine_->for_each_slot([](const Particle&) {});
 }
 
 // Whether the checkpoint is there.

@@ -93,7 +93,7 @@ void fields(HandOver<Bytes>& pass, State& state) {
 }
 template <typename Bytes>
 void fields(HandOver<Bytes>& pass, RealFrame& frame) {
-  pass(frame.step, frame.x, frame.v, frame.force, frame.u);
+  pass(frame.step, frame.x, frame.v, frame.force, frame.u, frame.shown);
 }
 template <typename Bytes>
 void fields(HandOver<Bytes>& pass, Curve& curve) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -137,13 +138,22 @@ class BodyRows {
     if (head) out.array(group_, "type", {particles_}, head->scene.body.type, "", "[id] index into `types`");
     if (!first.force.empty()) force_.emplace(out, group_, "force", chunk_of(particles_, 3), 3, "N", kRows);
     if (!first.u.empty()) u_.emplace(out, group_, "u", chunk_of(particles_, 3), 3, "m", kRows);
+    for (const std::vector<double>& field : first.shown)
+      numbers_.push_back(static_cast<uint32_t>(field.size() / std::max<size_t>(1, particles_)));
+    if (numbers_.empty()) return;
+    out.array(group_, "shown_numbers", {numbers_.size()}, numbers_, "",
+              "[field] numbers of a particle in `shown`");
+    const uint32_t all = std::accumulate(numbers_.begin(), numbers_.end(), 0u);
+    shown_.emplace(out, group_, "shown", chunk_of(particles_, all), all, "",
+                   "[row][number] what the rule shows, field after field, in SI; row frame * particles + id");
   }
 
   void add(const RealFrame& frame) {
     if (frame.x.size() != particles_ || frame.v.size() != particles_ ||
         frame.force.size() != (force_ ? particles_ : 0) || frame.u.size() != (u_ ? particles_ : 0))
       throw std::logic_error("the frames of a trace differ in their number of particles");
-    const uint64_t bytes = particles_ * 12 * sizeof(double);
+    const uint64_t numbers = std::accumulate(numbers_.begin(), numbers_.end(), uint64_t{12});
+    const uint64_t bytes = particles_ * numbers * sizeof(double);
     out_.reserve(bytes + bytes / 100 + pending() + kSlack);
     for (size_t k = 0; k < particles_; ++k) {
       x_.add(frame.x[k].data());
@@ -151,10 +161,11 @@ class BodyRows {
       if (force_) force_->add(frame.force[k].data());
       if (u_) u_->add(frame.u[k].data());
     }
+    if (shown_) add_shown(frame.shown);
     step_.add(frame.step);
     out_.flush();
   }
-  uint64_t pending() const { return 4 * x_.chunk_bytes(); }
+  uint64_t pending() const { return 4 * x_.chunk_bytes() + (shown_ ? shown_->chunk_bytes() : 0); }
   void finish(const std::optional<std::vector<uint64_t>>& bonds) {
     if (bonds)
       out_.array(group_, "bonds", {bonds->size()}, *bonds, "",
@@ -162,16 +173,31 @@ class BodyRows {
     x_.finish(), v_.finish();
     if (force_) force_->finish();
     if (u_) u_->finish();
+    if (shown_) shown_->finish();
   }
 
  private:
   static constexpr const char* kRows = "[row][axis] row frame * particles + id";
+  void add_shown(const std::vector<std::vector<double>>& shown) {
+    bool same = shown.size() == numbers_.size();
+    for (size_t f = 0; same && f < numbers_.size(); ++f) same = shown[f].size() == particles_ * numbers_[f];
+    if (!same) throw std::logic_error("the frames of a trace differ in what their rule shows");
+    std::vector<double> row;
+    for (size_t k = 0; k < particles_; ++k) {
+      row.clear();
+      for (size_t f = 0; f < numbers_.size(); ++f)
+        row.insert(row.end(), shown[f].begin() + static_cast<ptrdiff_t>(k * numbers_[f]),
+                   shown[f].begin() + static_cast<ptrdiff_t>((k + 1) * numbers_[f]));
+      shown_->add(row.data());
+    }
+  }
   const Writer& out_;
   size_t particles_;
   Handle group_;
   PerFrame<uint64_t> step_;
   hdf5::Growing<double> x_, v_;
-  std::optional<hdf5::Growing<double>> force_, u_;
+  std::optional<hdf5::Growing<double>> force_, u_, shown_;
+  std::vector<uint32_t> numbers_;  // by field that the rule shows
 };
 
 void read_frames(const Reader& in, const std::function<void(State)>& see) {
@@ -218,6 +244,12 @@ void read_bodies(const Reader& in, const std::function<void(RealFrame)>& see) {
                      (!displaced || in.length(group, "u") == rows),
                  "the bodies' fields");
   const size_t particles = rows / step.size();
+  std::vector<uint32_t> numbers;
+  if (in.has(group, "shown")) {
+    numbers = in.array<uint32_t>(group, "shown_numbers");
+    in.same_length(in.length(group, "shown") == rows, "the bodies' fields");
+  }
+  const auto all = static_cast<int>(std::accumulate(numbers.begin(), numbers.end(), 0u));
   for (size_t k = 0; k < step.size(); ++k) {
     RealFrame frame;
     frame.step = step[k];
@@ -232,6 +264,12 @@ void read_bodies(const Reader& in, const std::function<void(RealFrame)>& see) {
     triple("v", &RealFrame::v);
     if (forces) triple("force", &RealFrame::force);
     if (displaced) triple("u", &RealFrame::u);
+    frame.shown.resize(numbers.size());
+    if (all > 0)
+      in.rows<double>(group, "shown", k * particles, particles, all, [&](const double* values) {
+        for (size_t f = 0; f < numbers.size(); values += numbers[f++])
+          frame.shown[f].insert(frame.shown[f].end(), values, values + numbers[f]);
+      });
     see(std::move(frame));
   }
 }

@@ -51,8 +51,7 @@ struct RealFrame {
   std::vector<Vec3> x, v;   // m, not wrapped into a periodic box; m/s, half a step before the positions
   std::vector<Vec3> force;  // N, of the pairs; empty, or of all particles in each frame of a trace
   std::vector<Vec3> u;      // m, from the anchors; empty where the rule holds none by force
-  // What the rule shows of each particle (RuleDeclaration::shown): [field][particle x its numbers]. For
-  // viewers: a trace has none.
+  // What the rule shows of each particle (RuleDeclaration::shown): [field][particle x its numbers].
   std::vector<std::vector<double>> shown{};
 };
 
