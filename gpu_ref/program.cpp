@@ -118,6 +118,7 @@ class GpuProgram : public EngineProgram {
                "With --bench: then steps per second of whole runs, measured so many times")
         .range(1, 1000);
     app.option("--seconds", seconds_, "Of each of --repeats, at least").range(1e-3, 1e4).show_default();
+    app.flag("--interpret", choice_.interpret, "A rule of text: do not compile it for the device");
     app.flag("--list", list_, "Print the devices, and no more");
   }
 
@@ -133,6 +134,8 @@ class GpuProgram : public EngineProgram {
     fmt::print("{} steps of {} particles on {}, {:.3g} particle-steps/s\n", trace.steps(), plan.particles,
                fmt::join(names_, ", "),
                static_cast<double>(trace.steps()) * plan.particles / std::max(trace.seconds, 1e-9));
+    for (const auto& [name, text] : trace.notes)
+      if (name == "kernels") fmt::print("the rule's kernels are {}\n", text);
   }
 
  private:

@@ -6,14 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "gpu_ref/rounds_limits.h"
 #include "model/graph/program.h"
 
 namespace cuboct::gpu {
 
-inline constexpr int kMostRegisters = 64;
 inline constexpr int kMostInputs = 6;  // a dot of three axes
-inline constexpr int kMostBondNumbers = 8;
-inline constexpr int kMostNumbers = 32;  // of a particle's fields; of a round's sums
 
 struct Operation {
   int64_t low, high;  // of a clamp; of a constant both are its number, of noise low is the seed

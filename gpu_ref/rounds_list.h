@@ -61,19 +61,22 @@ struct RoundsGather {
   RoundsView from, to;
   uint8_t* type;
   uint32_t *id, *entered;
-  int64_t* listed[3];
+  RoundsPlace* listed;
   int32_t* home[3];
   int guard, frac, numbers;
   CUBOCT_DEVICE void operator()(uint32_t k) const {
     const uint32_t i = order[k];
+    RoundsPlace place;
     for (int a = 0; a < 3; ++a) {
       const int64_t x = from.x[a][i];
       to.x[a][k] = x;
       to.v[a][k] = from.v[a][i];
       if (to.u[0] != nullptr) to.u[a][k] = from.u[a][i];
-      listed[a][k] = x >> guard;
+      place.x[a] = static_cast<uint32_t>(x >> guard);
       home[a][k] = static_cast<int32_t>(x >> frac);
     }
+    place.type = from.type[i];
+    to.place[k] = listed[k] = place;
     for (int f = 0; f < numbers; ++f) to.fields[f][k] = from.fields[f][i];
     type[k] = from.type[i];
     id[k] = from.id[i];
@@ -81,18 +84,14 @@ struct RoundsGather {
   }
 };
 
-// Where particles stay in their order: what a list starts from.
+// Where particles stay in their order: the cells that they start from.
 struct RoundsMark {
   RoundsView at;
   uint32_t* entered;
-  int64_t* listed[3];
   int32_t* home[3];
-  int guard, frac;
+  int frac;
   CUBOCT_DEVICE void operator()(uint32_t i) const {
-    for (int a = 0; a < 3; ++a) {
-      listed[a][i] = at.x[a][i] >> guard;
-      home[a][i] = static_cast<int32_t>(at.x[a][i] >> frac);
-    }
+    for (int a = 0; a < 3; ++a) home[a][i] = static_cast<int32_t>(at.x[a][i] >> frac);
     entered[i] = 1u << 13;
   }
 };
@@ -100,7 +99,8 @@ struct RoundsMark {
 // How many partners are within `reach2`; those beyond `width` rows are not kept.
 struct RoundsMakeList {
   RoundsBins bins;
-  const int64_t* x[3];  // visible
+  const int64_t* x[3];  // P+G fractional bits
+  int guard;
   const uint32_t *first, *count;
   double reach2;
   uint32_t *entries, *counts;
@@ -108,7 +108,7 @@ struct RoundsMakeList {
   size_t stride;
 
   CUBOCT_DEVICE uint32_t operator()(uint32_t i) const {
-    const int64_t own[3] = {x[0][i], x[1][i], x[2][i]};
+    const int64_t own[3] = {x[0][i] >> guard, x[1][i] >> guard, x[2][i] >> guard};
     const int home[3] = {bins.along(own[0], 0), bins.along(own[1], 1), bins.along(own[2], 2)};
     uint32_t found = 0;
     for (int z = -1; z <= 1; ++z)
@@ -136,7 +136,7 @@ struct RoundsMakeList {
             if (j == i) continue;
             double square = 0;
             for (int a = 0; a < 3; ++a) {
-              const auto apart = static_cast<double>(x[a][j] + shift[a] - own[a]);
+              const auto apart = static_cast<double>((x[a][j] >> guard) + shift[a] - own[a]);
               square += apart * apart;
             }
             if (square > reach2) continue;
@@ -149,15 +149,24 @@ struct RoundsMakeList {
   }
 };
 
-struct RoundsReset {
-  RoundsControl* control;
-  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {kNoStep, kNoStep}; }
+struct RoundsCount {
+  const uint32_t* counts;
+  CUBOCT_DEVICE bool idle() const { return false; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i]; }
+};
+struct RoundsZero {
+  uint64_t* sum;
+  CUBOCT_DEVICE void operator()(uint32_t) const { *sum = 0; }
 };
 
-struct RoundsCopy {
-  const int64_t* from;
-  int64_t* to;
-  CUBOCT_DEVICE void operator()(uint32_t i) const { to[i] = from[i]; }
+// Before a batch. `near_stale`: whether its first step finds its near lists so.
+struct RoundsReset {
+  RoundsControl* control;
+  bool near_stale;
+  CUBOCT_DEVICE void operator()(uint32_t) const {
+    *control = {kNoStep, kNoStep, {}};
+    control->near_stale[1] = near_stale;
+  }
 };
 
 }  // namespace cuboct::gpu

@@ -21,6 +21,7 @@ struct GpuChoice {
   Arithmetic arithmetic = Arithmetic::fixed;
   Options engine;
   Hooks hooks;
+  bool interpret = false;  // a rule of text, rather than to compile it
 };
 
 // `plan` is the scene's. References are kept.

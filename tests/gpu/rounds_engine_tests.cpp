@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "gpu_ref/rounds_engine.h"
 #include "hw/engine_kind.h"
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "model/trace/compare.h"
+#include "tests/gpu/torn_glass.h"
 #include "tests/support/cases.h"
 #include "tests/support/dice.h"
 
@@ -100,21 +99,9 @@ TEST(GpuRounds, FaultsAriseAsInGolden) {
   EXPECT_EQ(compared.faults, all_faults().size());
 }
 
-// Glass that is torn apart so fast that halves of it lose sight of one another.
 TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   const std::string rules = CUBOCT_SOURCE_DIR "/scenes/rules/";
-  std::ifstream in(rules + "glass.toml");
-  std::string torn((std::istreambuf_iterator<char>(in)), {});
-  for (const char* speed : {"0, 0.5, 0", "0, -0.5, 0"}) {
-    const size_t at = torn.find(speed);
-    ASSERT_NE(at, std::string::npos);
-    torn.replace(at, std::string(speed).size(), speed[3] == '-' ? "0, -400, 0" : "0, 400, 0");
-  }
-  // No bond lasts: those of the grips would leave their tables.
-  const size_t lasting = torn.find("start.hard");
-  ASSERT_NE(lasting, std::string::npos);
-  torn.erase(lasting, torn.find('\n', lasting) - lasting);
-  for (const Scene& scene : {read_scene(rules + "heat.toml"), parse_scene(torn, rules + "torn.toml")}) {
+  for (const Scene& scene : {read_scene(rules + "heat.toml"), torn_glass(rules)}) {
     const Plan plan = program_plan_of(scene, Arch());
     const auto golden = integer_run(scene, plan, nullptr);
     const auto device = integer_run(
