@@ -112,6 +112,8 @@ std::string Nvrtc::compiled(const std::string& source,
 
 std::string compiled_file(const std::string& source, const std::string& architecture,
                           const std::string& directory) {
+  if (!architecture.starts_with("sm_"))
+    throw NvrtcError(fmt::format("CUDA's compiler knows no architecture '{}'", architecture));
   if (directory.empty())
     throw NvrtcError("neither XDG_CACHE_HOME nor HOME is set: no place to keep compiled rules");
   const Nvrtc nvrtc;

@@ -20,8 +20,8 @@ class NvrtcError : public std::runtime_error {
 class Nvrtc {
  public:
   // By names in their order; throws NvrtcError where none is there, or one lacks a function.
-  explicit Nvrtc(const std::vector<std::string>& libraries = {"libnvrtc.so.13", "libnvrtc.so.12",
-                                                              "libnvrtc.so"});
+  explicit Nvrtc(const std::vector<std::string>& libraries = {
+                     "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so", "/usr/local/cuda/lib64/libnvrtc.so"});
   ~Nvrtc();
   Nvrtc(const Nvrtc&) = delete;
   Nvrtc& operator=(const Nvrtc&) = delete;

@@ -32,12 +32,12 @@ inline void atomic_min(uint32_t* at, uint32_t value) { *at = *at < value ? *at :
   extern "C" __global__ void __launch_bounds__(256)                                        \
       name(uint32_t count, const __grid_constant__ cuboct::gpu::RoundsStep<Graphs> step) { \
     const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;                              \
-    if (i < count) step(i);                                                                \
+    if (i < count) step(i, {});                                                            \
   }
 #else
 #define CUBOCT_ROUND(name, Graphs)                                              \
   extern "C" void name(uint32_t count, const cuboct::gpu::RoundsFrame& frame) { \
     const cuboct::gpu::RoundsStep<Graphs> step{frame, {}};                      \
-    for (uint32_t i = 0; i < count; ++i) step(i);                               \
+    for (uint32_t i = 0; i < count; ++i) step(i, {});                           \
   }
 #endif

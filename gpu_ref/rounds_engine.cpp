@@ -512,9 +512,16 @@ class RoundsEngine final : public IntegerEngine {
     if (compiled)
       kernels_->launch(stream_, k, count_, block_, frame);
     else if (rows_ != nullptr)
-      for_each(stream_, 0, count_, block_, RoundsStep<Interpreted<true>>{frame, {code}});
+      interpret<true>(frame, code);
     else
-      for_each(stream_, 0, count_, block_, RoundsStep<Interpreted<false>>{frame, {code}});
+      interpret<false>(frame, code);
+  }
+  template <bool Bonded>
+  void interpret(const RoundsFrame& frame, const RoundCode& code) {
+    const auto threads = static_cast<uint32_t>(block_);
+    const InterpretedBlock<Bonded> block{{frame, {code}}, count_, threads};
+    for_each_block(stream_, (count_ + threads - 1) / threads, block_,
+                   code.numbers() * threads * sizeof(int64_t), block);
   }
 
   void step(uint32_t number, bool compiled) {

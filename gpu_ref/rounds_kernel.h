@@ -118,7 +118,9 @@ struct RoundsBonds {
     for (int a = 0; a < 3; ++a) {
       if (period[a] > 0) {
         const int64_t half = apart[a] + period[a] / 2;
-        apart[a] -= (half >= 0 ? half / period[a] : -((period[a] - 1 - half) / period[a])) * period[a];
+        // Seldom so; and a division of 64 bits takes a hundred instructions.
+        if (half < 0 || half >= period[a])
+          apart[a] -= (half >= 0 ? half / period[a] : -((period[a] - 1 - half) / period[a])) * period[a];
       }
       int64_t cells = ((own[a] + apart[a]) >> position_frac) - (own[a] >> position_frac);
       if (period[a] > 0 && (cells < -1 || cells > 1)) {
@@ -180,15 +182,14 @@ struct RoundsFrame {
 //   Own             what all pairs of a particle share, filled in by begin(frame, i, own)
 //   pair(frame, own, pair, sums, fits)  whether the pair counts: then its terms are in the sums, and its
 //                   bond has its new numbers; `fits` becomes false where a check found what does not fit
-//   broken(frame, slot), keep(frame, slot)  of a bond that is not met
-//   finish(frame, i, sums, motion, fits)  writes fields; in the last round makes the motion
+//   broken(frame, own, slot), keep(frame, slot)  of a bond that is not met
+//   finish(frame, i, own, sums, motion, fits)  writes fields; in the last round makes the motion
 template <class Graphs>
 struct RoundsStep : RoundsFrame, Graphs {
-  CUBOCT_DEVICE void operator()(uint32_t i) const {
+  CUBOCT_DEVICE void operator()(uint32_t i, typename Graphs::Own own) const {
     if (idle()) return;
     int64_t sums[Graphs::kSums];
     for (int k = 0; k < Graphs::kSums; ++k) sums[k] = 0;
-    typename Graphs::Own own;
     this->begin(*this, i, own);
     bool fits = true;
     if constexpr (Graphs::kBonded)
@@ -197,7 +198,7 @@ struct RoundsStep : RoundsFrame, Graphs {
       meet_near(i, own, sums, fits);
     RoundsMotion motion;
     for (int a = 0; a < 3; ++a) motion.v[a] = from.v[a][i], motion.u[a] = motion.drift[a] = 0;
-    this->finish(*this, i, sums, motion, fits);
+    this->finish(*this, i, own, sums, motion, fits);
     if (last) fits = move(i, motion) && fits;
     if (!fits) atomic_min(&control->doubt, number);
   }
@@ -216,7 +217,7 @@ struct RoundsStep : RoundsFrame, Graphs {
       pair.j = list.entries[pair.slot] & ((1u << kPartnerBits) - 1);
       for (int a = 0; a < 3; ++a) pair.apart[a] = (from.x[a][pair.j] >> guard) - x[a];
       if (!bonds.meet(x, pair.apart)) {
-        fits = fits && this->broken(*this, pair.slot);
+        fits = fits && this->broken(*this, own, pair.slot);
         this->keep(*this, pair.slot);
         continue;
       }

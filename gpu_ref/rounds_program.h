@@ -24,12 +24,15 @@ struct RoundCode {
   Span<Fetch> own, early_fetch, late_fetch, finish_fetch;
   Span<Store> terms, writes, v, u, drift;
   const CodeTable *tables, *finish_tables;
-  int types, when;
+  int types, when, registers;
   Span<Store> bond_writes;
   Span<Operation> broken_constants, broken_code;
   Span<Fetch> broken_fetch;
   const CodeTable* broken_tables;
-  int broken;
+  int broken, broken_registers;
+
+  // Registers and sums of a thread.
+  size_t numbers() const { return static_cast<size_t>(registers + terms.count + broken_registers); }
 };
 
 // Holds what RoundCodes point to.
@@ -60,12 +63,14 @@ class ProgramOnDevice {
                          put_tables(program.rounds[k].finish),
                          program.types,
                          of.when,
+                         of.registers,
                          put(of.bond_writes, stores_),
                          put(of.broken_constants, operations_),
                          put(of.broken_code, operations_),
                          put(of.broken_fetch, fetches_),
                          put_tables(program.broken),
-                         of.broken});
+                         of.broken,
+                         of.broken_registers});
     }
   }
   const std::vector<RoundCode>& rounds() const { return rounds_; }

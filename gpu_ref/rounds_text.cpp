@@ -167,9 +167,10 @@ class RoundText {
         "CUBOCT_DEVICE void begin(const RoundsFrame& at, uint32_t i, Own& own) const {{\n{}}}\n"
         "CUBOCT_DEVICE bool pair(const RoundsFrame& at, const Own& own, const RoundsPair& pair, "
         "int64_t (&sums)[kSums], bool& fits) const {{\n{}}}\n"
-        "CUBOCT_DEVICE bool broken(const RoundsFrame& at, size_t slot) const {{\n{}}}\n"
+        "CUBOCT_DEVICE bool broken(const RoundsFrame& at, const Own&, size_t slot) const {{\n{}}}\n"
         "CUBOCT_DEVICE void keep(const RoundsFrame& at, size_t slot) const {{\n{}}}\n"
-        "CUBOCT_DEVICE void finish(const RoundsFrame& at, uint32_t i, const int64_t (&sums)[kSums], "
+        "CUBOCT_DEVICE void finish(const RoundsFrame& at, uint32_t i, const Own&, "
+        "const int64_t (&sums)[kSums], "
         "RoundsMotion& motion, bool& fits) const {{\n{}}}\n"
         "}};\n",
         name, program_.bonded, std::max<size_t>(terms_.size(), 1), own_members(), begin(), pair(), broken(),

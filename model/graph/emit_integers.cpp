@@ -198,8 +198,8 @@ std::string statements(const Graph& graph, const std::vector<int>& nodes, const 
     text += fmt::format("const {0} n{1} = static_cast<{0}>({2});\n", type_text(node), n,
                         Expression(graph, node, outside, all_count).text());
     if (node.op == Op::check)
-      text += fmt::format("fits = fits && (n{} == {} || {} == 0);\n", n, value_text(graph, node.inputs[0]),
-                          value_text(graph, node.inputs[1]));
+      text += fmt::format("fits = fits && ({} == 0 || n{} == {});\n", value_text(graph, node.inputs[1]), n,
+                          value_text(graph, node.inputs[0]));
   }
   return text;
 }

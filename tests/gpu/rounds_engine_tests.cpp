@@ -9,6 +9,7 @@
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "model/trace/compare.h"
+#include "tests/gpu/host_compiler.h"
 #include "tests/gpu/torn_glass.h"
 #include "tests/support/cases.h"
 #include "tests/support/dice.h"
@@ -104,17 +105,24 @@ TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   for (const Scene& scene : {read_scene(rules + "heat.toml"), torn_glass(rules)}) {
     const Plan plan = program_plan_of(scene, Arch());
     const auto golden = integer_run(scene, plan, nullptr);
-    const auto device = integer_run(
-        scene, plan, nullptr, [&](const State& state) { return gpu::make_rounds_engine(plan, state, {}); });
-    std::vector<uint64_t> expected{golden->hash()}, found{device->hash()};
-    golden->advance(90, &expected), device->advance(90, &found);
-    EXPECT_EQ(found, expected);
-    if (plan.program->rows == nullptr) continue;
-    const std::vector<double> damage = device->damage();
-    EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.25; }), 20);
-    EXPECT_EQ(damage, golden->damage());
-    const Counters counters = device->counters();
-    EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
+    std::vector<uint64_t> expected{golden->hash()};
+    golden->advance(90, &expected);
+    for (const bool compiled : {false, true}) {
+      const gpu::CompileRounds compile = compiled ? host_compiler("rule") : gpu::CompileRounds();
+      const auto device = integer_run(scene, plan, nullptr, [&](const State& state) {
+        return gpu::make_rounds_engine(plan, state, {}, compile);
+      });
+      std::vector<uint64_t> found{device->hash()};
+      device->advance(90, &found);
+      EXPECT_EQ(found, expected);
+      EXPECT_EQ(note(device->notes(), "kernels"), compiled ? "compiled for host" : "interpreted");
+      if (plan.program->rows == nullptr) continue;
+      const std::vector<double> damage = device->damage();
+      EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.25; }), 20);
+      EXPECT_EQ(damage, golden->damage());
+      const Counters counters = device->counters();
+      EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
+    }
   }
 }
 
