@@ -118,7 +118,10 @@ class GpuProgram : public EngineProgram {
                "With --bench: then steps per second of whole runs, measured so many times")
         .range(1, 1000);
     app.option("--seconds", seconds_, "Of each of --repeats, at least").range(1e-3, 1e4).show_default();
-    app.flag("--interpret", choice_.interpret, "A rule of text: do not compile it for the device");
+    app.option("--rule-code", rule_code_,
+               "How a rule of text runs: interpreted, or automatic: compiled where CUDA's compiler is found")
+        .one_of({"automatic", "interpreted"})
+        .show_default();
     app.flag("--list", list_, "Print the devices, and no more");
   }
 
@@ -139,7 +142,7 @@ class GpuProgram : public EngineProgram {
   }
 
  private:
-  std::string start_, precision_ = "fixed";
+  std::string start_, precision_ = "fixed", rule_code_ = "automatic";
   GpuChoice choice_;
   int gpus_ = 0, repeats_ = 0;
   double seconds_ = 0.3;
@@ -165,6 +168,7 @@ bool GpuProgram::prepare(ProgramOptions& options) {
   if (options.run.forces && !options.run.checkpoint.path.empty())
     throw InputError("--forces goes without --checkpoint", "a checkpoint's frames hold no forces");
   choice_.arithmetic = arithmetic_of(precision_);
+  choice_.interpret = rule_code_ == "interpreted";
   return false;
 }
 
