@@ -160,6 +160,9 @@ class RoundsEngine final : public IntegerEngine {
       }
       if (bins <= kMostBins) break;
     }
+    coarse_shift_ = 0;
+    for (size_t a = 0; a < 3; ++a)
+      while (2 * (bins_.length[a] / bins_.count[a] + 1) >> coarse_shift_ >= int64_t{1} << 31) ++coarse_shift_;
     for (Array<uint32_t>* of : {&bin_count_, &bin_first_, &bin_taken_})
       if (of->size() < bins) of->resize(bins);
   }
@@ -344,9 +347,11 @@ class RoundsEngine final : public IntegerEngine {
     RoundsMakeList make{bins_,
                         {view(at_).x[0], view(at_).x[1], view(at_).x[2]},
                         guard_,
+                        near_at_.data(),
+                        coarse_shift_,
                         bin_first_.data(),
                         bin_count_.data(),
-                        std::pow((reach_ + skin_.now()) * unit, 2),
+                        coarse_reach2(),
                         entries_.data(),
                         counts_.data(),
                         width_,
@@ -373,6 +378,11 @@ class RoundsEngine final : public IntegerEngine {
     near_ = {near_entries_.data(), near_counts_.data(), near_at_.data(),
              std::pow((reach_ + near_skin) * unit, 2), allowed2(near_skin)};
     serve(allowed2(skin_.now()));
+  }
+  // Coarse places are rounded down: a distance may be off by the root of three of their units.
+  uint64_t coarse_reach2() const {
+    const double reach = std::ldexp(reach_ + skin_.now(), program_.position_frac - coarse_shift_) + 2;
+    return static_cast<uint64_t>(reach * reach);
   }
   double mean_of(const Array<uint32_t>& counts) {
     for_each(stream_, 0, 1, 32, RoundsZero{hashes_.data()});
@@ -423,9 +433,11 @@ class RoundsEngine final : public IntegerEngine {
                         others.id.data(),
                         entered_.data(),
                         listed_at_.data(),
+                        near_at_.data(),  // near lists begin anew
                         {},
                         guard_,
                         frac_,
+                        coarse_shift_,
                         numbers_};
     for (size_t a = 0; a < 3; ++a) gather.home[a] = home_[a].data();
     for_each(stream_, 0, count_, block_, gather);
@@ -574,6 +586,7 @@ class RoundsEngine final : public IntegerEngine {
   uint32_t count_;
   uint64_t step_;
   int numbers_, guard_, frac_;
+  int coarse_shift_ = 0;
   double reach_;  // cells
   Skin skin_;     // cells
   RoundsCells cells_{};
