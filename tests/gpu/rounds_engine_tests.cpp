@@ -126,5 +126,20 @@ TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   }
 }
 
+// P of 30 bits: two cells apart are 2^31, and lists are made over coarser places.
+TEST(GpuRounds, FinestPlacesHaveGoldensBits) {
+  const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/rules/copper.toml");
+  Arch arch;
+  arch.widths.position_frac = 30;
+  const Plan plan = program_plan_of(scene, arch);
+  ASSERT_EQ(plan.program->program.position_frac, 30);
+  const auto golden = integer_run(scene, plan, nullptr);
+  const auto device = integer_run(
+      scene, plan, nullptr, [&](const State& state) { return gpu::make_rounds_engine(plan, state, {}); });
+  std::vector<uint64_t> expected, found;
+  golden->advance(12, &expected), device->advance(12, &found);
+  EXPECT_EQ(found, expected);
+}
+
 }  // namespace
 }  // namespace cuboct::test
