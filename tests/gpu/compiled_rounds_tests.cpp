@@ -93,6 +93,31 @@ TEST(CompiledRounds, PairLawsHaveGoldensBits) {
   EXPECT_EQ(faults, 2u);
 }
 
+// The product of a slope and a fraction takes 32 by 32 bits where no entry of the table needs more.
+TEST(CompiledRounds, SteepTablesAreTold) {
+  const auto text_of_slope = [](int32_t slope) {
+    graph::Builder b;
+    FixedTable table;
+    table.degree = 2, table.difference_frac = 8, table.index_bits = 3, table.fraction_bits = 10;
+    table.c0.assign(8, 0), table.c1.assign(8, slope), table.c2.assign(8, 1024);
+    graph::FixedProgram program;
+    graph::Round round;
+    const int x = b.input(graph::Source::apart, 0, 0, {0, 60000});
+    const int y = b.lookup(b.table(table), x);
+    round.when = b.constant(1);
+    round.sums = {{"sum", {y}}};
+    round.pair = b.take();
+    program.rounds = {round};
+    return gpu::text_of(program, sizeof(gpu::RoundsFrame)).source;
+  };
+  const auto holds = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+  };
+  // At the end of a bin the slope is c1 + round(1024 1023/1024) = c1 + 1023.
+  EXPECT_TRUE(holds(text_of_slope(2147483647 - 1023), "value<true>"));
+  EXPECT_TRUE(holds(text_of_slope(2147483647 - 1022), "value<false>"));
+}
+
 // Code that computes something else is found out before it is used.
 TEST(CompiledRounds, WrongCodeIsNotUsed) {
   const Scene scene = rule_scene("heat");
