@@ -88,18 +88,17 @@ class Library {
   void* library_ = nullptr;
 };
 
-TEST(EmitIntegers, RandomGraphsHaveGoldensValues) {
-  constexpr int kGraphs = 24;
+void compare_graphs(uint64_t first_seed, int count) {
   std::vector<Graph> graphs;
   std::string source;
-  for (int k = 0; k < kGraphs; ++k) {
-    graphs.push_back(random_graph(static_cast<uint64_t>(k) + 1, 60).graph);
+  for (int k = 0; k < count; ++k) {
+    graphs.push_back(random_graph(first_seed + static_cast<uint64_t>(k), 60).graph);
     source += function_of(graphs.back(), k);
   }
   const Library library(source);
   uint64_t values = 0, faults = 0, narrow = 0;
   std::map<Op, int> seen;
-  for (int k = 0; k < kGraphs; ++k) {
+  for (int k = 0; k < count; ++k) {
     SCOPED_TRACE(fmt::format("graph {}", k));
     const Graph& graph = graphs[static_cast<size_t>(k)];
     const auto function = library.function(k);
@@ -127,6 +126,10 @@ TEST(EmitIntegers, RandomGraphsHaveGoldensValues) {
   EXPECT_GT(faults, 100u);
   EXPECT_GT(narrow, 500u);
 }
+
+TEST(EmitIntegers, RandomGraphsHaveGoldensValues) { compare_graphs(1, 24); }
+
+TEST(EmitIntegersMore, RandomGraphsHaveGoldensValues) { compare_graphs(1000, 400); }
 
 // What 32 bits hold is computed in them; one more bit is not.
 TEST(EmitIntegers, WidthsFollowIntervals) {
