@@ -190,7 +190,8 @@ EngineKind GpuProgram::kind(Scene& scene, const Plan& plan, const ProgramOptions
 
 // Rates of whole runs; a run that stops is told by the trace of one run.
 void GpuProgram::print_bench(const Scene& scene, const Plan& plan, const Recorded& run) {
-  const RateRequest rates{choice_.arithmetic, run.trace.steps(), repeats_, seconds_, choice_.engine};
+  const RateRequest rates{choice_.arithmetic, run.trace.steps(), repeats_,
+                          seconds_,           choice_.engine,    choice_.interpret};
   if (repeats_ > 0 && !run.trace.stop && !run.interrupted)
     for (const double rate : step_rates(scene, plan, rates))
       fmt::print("gpu.steps_per_second {:.15g} 1/s\n", rate);

@@ -46,6 +46,9 @@ class RoundsEngine final : public IntegerEngine {
     make_room();
     upload(initial);
     if (compile) load(compile);
+    if (!kernels_) return;
+    make_lists();
+    prove();
   }
 
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {

@@ -95,7 +95,7 @@ class Reader {
       case Source::bond_constant:
         return fmt::format("at.bonds.constant({}, slot)", k);
       case Source::sum:
-        return fmt::format("sums[{}]", first_of_sum(k) + static_cast<size_t>(a));
+        return fmt::format("sums[{}]", round_.place(k) + a);
       case Source::own_id:
         return "at.from.id[i]";
       case Source::other_id:
@@ -121,11 +121,6 @@ class Reader {
     return fmt::format("at.pair_constants[{} + pair.own_type * {} + pair.other_type]",
                        k * program_.types * program_.types, program_.types);
   }
-  size_t first_of_sum(int sum) const {
-    size_t first = 0;
-    for (int k = 0; k < sum; ++k) first += round_.sums[static_cast<size_t>(k)].terms.size();
-    return first;
-  }
 
   std::string lookup(const Node& node, const std::string& argument, const std::string& law) const {
     const FixedTable& t = graph_.tables[static_cast<size_t>(node.table)];
@@ -148,12 +143,10 @@ class RoundText {
         round_(round),
         pair_(program, round, round.pair, entries),
         finish_(program, round, round.finish, entries),
-        broken_(program, round, program.broken, entries) {
-    for (const graph::Sum& sum : round.sums) terms_.insert(terms_.end(), sum.terms.begin(), sum.terms.end());
-    std::vector<int> made = terms_;
-    for (const graph::Write& write : round.bond_writes) made.push_back(write.node);
-    early_ = needed_by(round.pair, {round.when});
-    const std::vector<int> all = needed_by(round.pair, made);
+        broken_(program, round, program.broken, entries),
+        terms_(terms_of(round)),
+        early_(needed_by(round.pair, {round.when})) {
+    const std::vector<int> all = needed_by(round.pair, pair_outputs(round));
     std::set_difference(all.begin(), all.end(), early_.begin(), early_.end(), std::back_inserter(late_));
     for (std::vector<int>* list : {&early_, &late_}) take_own(*list);
   }
@@ -229,8 +222,6 @@ class RoundText {
   std::string finish() const {
     const Graph& g = round_.finish;
     const graph::Motion motion = &round_ == &program_.rounds.back() ? program_.motion : graph::Motion{};
-    std::vector<int> made;
-    for (const graph::Write& write : round_.writes) made.push_back(write.node);
     std::string stores;
     for (const graph::Write& write : round_.writes)
       stores += fmt::format("at.to.fields[{}][i] = {};\n", program_.place(write.field) + write.component,
@@ -238,10 +229,9 @@ class RoundText {
     const auto move = [&](const char* what, const std::vector<int>& axes) {
       for (size_t a = 0; a < axes.size(); ++a)
         stores += fmt::format("motion.{}[{}] = {};\n", what, a, value_text(g, axes[a]));
-      made.insert(made.end(), axes.begin(), axes.end());
     };
     move("v", motion.v), move("drift", motion.drift), move("u", motion.u);
-    return graph::statements(g, needed_by(g, made), finish_.outside()) + stores;
+    return graph::statements(g, needed_by(g, finish_outputs(program_, round_)), finish_.outside()) + stores;
   }
 
   const FixedProgram& program_;

@@ -241,20 +241,22 @@ class TextRunner : public IntegerEngine {
 
 std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan, const GpuChoice& choice,
                                             CheckpointReader* from) {
-  CompileRounds compile;
-  if (!choice.interpret)
-    compile = [](const std::string& source, const std::string& architecture) {
-      return compiled_file(source, architecture, cache_directory());
-    };
   auto run = integer_run(scene, plan, from, [&](const State& state) {
-    return std::make_unique<TextRunner>(make_rounds_engine(plan, state, choice.engine, compile),
-                                        choice.hooks);
+    return std::make_unique<TextRunner>(
+        make_rounds_engine(plan, state, choice.engine, rounds_compiler(choice.interpret)), choice.hooks);
   });
   if (choice.hooks.ready) choice.hooks.ready();
   return run;
 }
 
 }  // namespace
+
+CompileRounds rounds_compiler(bool interpret) {
+  if (interpret) return {};
+  return [](const std::string& source, const std::string& architecture) {
+    return compiled_file(source, architecture, cache_directory());
+  };
+}
 
 EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choice) {
   EngineKind kind = choice.arithmetic == Arithmetic::fixed
