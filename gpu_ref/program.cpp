@@ -118,6 +118,10 @@ class GpuProgram : public EngineProgram {
                "With --bench: then steps per second of whole runs, measured so many times")
         .range(1, 1000);
     app.option("--seconds", seconds_, "Of each of --repeats, at least").range(1e-3, 1e4).show_default();
+    app.option("--rule-code", rule_code_,
+               "How a rule of text runs: interpreted, or automatic: compiled where CUDA's compiler is found")
+        .one_of({"automatic", "interpreted"})
+        .show_default();
     app.flag("--list", list_, "Print the devices, and no more");
   }
 
@@ -133,10 +137,12 @@ class GpuProgram : public EngineProgram {
     fmt::print("{} steps of {} particles on {}, {:.3g} particle-steps/s\n", trace.steps(), plan.particles,
                fmt::join(names_, ", "),
                static_cast<double>(trace.steps()) * plan.particles / std::max(trace.seconds, 1e-9));
+    for (const auto& [name, text] : trace.notes)
+      if (name == "kernels") fmt::print("the rule's kernels are {}\n", text);
   }
 
  private:
-  std::string start_, precision_ = "fixed";
+  std::string start_, precision_ = "fixed", rule_code_ = "automatic";
   GpuChoice choice_;
   int gpus_ = 0, repeats_ = 0;
   double seconds_ = 0.3;
@@ -162,6 +168,7 @@ bool GpuProgram::prepare(ProgramOptions& options) {
   if (options.run.forces && !options.run.checkpoint.path.empty())
     throw InputError("--forces goes without --checkpoint", "a checkpoint's frames hold no forces");
   choice_.arithmetic = arithmetic_of(precision_);
+  choice_.interpret = rule_code_ == "interpreted";
   return false;
 }
 
@@ -183,7 +190,8 @@ EngineKind GpuProgram::kind(Scene& scene, const Plan& plan, const ProgramOptions
 
 // Rates of whole runs; a run that stops is told by the trace of one run.
 void GpuProgram::print_bench(const Scene& scene, const Plan& plan, const Recorded& run) {
-  const RateRequest rates{choice_.arithmetic, run.trace.steps(), repeats_, seconds_, choice_.engine};
+  const RateRequest rates{choice_.arithmetic, run.trace.steps(), repeats_,
+                          seconds_,           choice_.engine,    choice_.interpret};
   if (repeats_ > 0 && !run.trace.stop && !run.interrupted)
     for (const double rate : step_rates(scene, plan, rates))
       fmt::print("gpu.steps_per_second {:.15g} 1/s\n", rate);

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "gpu_ref/rounds_engine.h"
+#include "gpu_ref/run.h"
 #include "hw/engine_kind.h"
 #include "model/base/interrupt.h"
 
@@ -23,7 +23,9 @@ double seconds_of(auto&& engine, uint64_t steps) {
 std::vector<double> step_rates(const Scene& scene, const Plan& plan, const RateRequest& request) {
   const bool fixed = request.arithmetic == Arithmetic::fixed;
   const State initial = fixed ? to_fixed(scene.body, plan.rule, plan.lattice, plan.origin) : State();
-  const auto rounds = [&](const State& state) { return make_rounds_engine(plan, state, request.engine); };
+  const auto rounds = [&](const State& state) {
+    return make_rounds_engine(plan, state, request.engine, rounds_compiler(request.interpret));
+  };
   const auto seconds_of_a_run = [&] {
     if (plan.program != nullptr) return seconds_of(integer_run(scene, plan, nullptr, rounds), request.steps);
     if (fixed) return seconds_of(make_fixed_engine(scene, plan, initial, request.engine), request.steps);

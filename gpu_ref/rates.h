@@ -14,6 +14,7 @@ struct RateRequest {
   int repeats = 3;
   double seconds = 0.3;  // of stepping that each repeat takes at least
   Options engine;
+  bool interpret = false;  // as GpuChoice
 };
 
 // Steps per second of each repeat: of whole runs from the scene's start, as many as it takes. One repeat more

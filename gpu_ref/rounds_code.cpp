@@ -126,6 +126,7 @@ void add_broken(const graph::FixedProgram& program, const graph::Round& round, R
   lists.broken_code = code.operations(nodes, false);
   lists.broken_fetch = code.fetches(nodes, false);
   lists.broken = code.at(program.broken_at);
+  lists.broken_registers = registers.count;
 }
 
 RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round& round, Written& written,
@@ -164,6 +165,7 @@ RoundLists code_of_round(const graph::FixedProgram& program, const graph::Round&
                    .u = done.axes(motion.u),
                    .drift = done.axes(motion.drift),
                    .when = pair.at(round.when),
+                   .registers = static_cast<int>(registers),
                    .bond_writes = {},
                    .broken_constants = {},
                    .broken_code = {},

@@ -6,16 +6,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "gpu_ref/rounds_limits.h"
 #include "model/graph/program.h"
 
 namespace cuboct::gpu {
 
-inline constexpr int kMostRegisters = 64;
 inline constexpr int kMostInputs = 6;  // a dot of three axes
-inline constexpr int kMostBondNumbers = 8;
-inline constexpr int kMostNumbers = 32;  // of a particle's fields; of a round's sums
 
-struct Operation {
+// 16 bytes at a time.
+struct alignas(16) Operation {
   int64_t low, high;  // of a clamp; of a constant both are its number, of noise low is the seed
   uint8_t op, inputs, shift, width;
   uint8_t out, table;
@@ -37,11 +36,13 @@ struct RoundLists {
   std::vector<Fetch> own, early_fetch, late_fetch, finish_fetch;
   std::vector<Store> terms, writes, v, u, drift;
   int when = 0;
+  int registers = 0;  // of the pair's operations, and then of the finish
   std::vector<Store> bond_writes;
   // Of a bond that is not met: whether it counts no more, the register `broken`.
   std::vector<Operation> broken_constants, broken_code;
   std::vector<Fetch> broken_fetch;
   int broken = -1;  // all bonds count
+  int broken_registers = 0;
 };
 
 // By round. InputError where one needs more than a thread has, or two rounds make the same

@@ -1,31 +1,58 @@
 // SPDX-License-Identifier: MIT
-// What a thread does for its particle in a round of a program: its partners' terms, then its finish. The
-// operations are golden's (model/graph/interpret.h).
+// What a thread does for its particle in a round of a program: its partners' terms, then its finish. How the
+// program's graphs run is left open: operation by operation (rounds_interpreter.h), or as text that is
+// compiled while the engine runs (rounds_text.h). For that this file includes no header of the host's
+// library.
 #pragma once
 
+#ifdef CUBOCT_ROUNDS_ALONE
+#include "gpu_ref/rounds_alone.h"
+#else
 #include "gpu_ref/grid_view.h"
-#include "gpu_ref/rounds_program.h"
+#endif
+#include "gpu_ref/rounds_limits.h"
+#include "gpu_ref/rounds_table.h"
 #include "model/base/hash.h"
-#include "model/graph/graph.h"
-#include "model/graph/table_value.h"
 
 namespace cuboct::gpu {
 
 inline constexpr uint32_t kNoStep = 0xffffffffu;
+inline constexpr uint32_t kLongestBatch = 64;  // steps without the host
+
+// What others see of a particle. Of its visible place the lowest 32 bits: as P is at most 30, a difference of
+// two that are less than two cells apart is that of these numbers, wrapped.
+struct alignas(16) RoundsPlace {
+  uint32_t x[3];
+  uint32_t type;
+};
+CUBOCT_DEVICE inline int32_t apart_of(const RoundsPlace& own, const RoundsPlace& other, int axis) {
+  return static_cast<int32_t>(other.x[axis] - own.x[axis]);
+}
+// Square of the displacement, visible units.
+CUBOCT_DEVICE inline double moved2_of(const RoundsPlace& before, const RoundsPlace& now) {
+  double square = 0;
+  for (int a = 0; a < 3; ++a) {
+    const auto moved = static_cast<double>(apart_of(before, now, a));
+    square += moved * moved;
+  }
+  return square;
+}
 
 // Particles as a step finds them, or leaves them.
 struct RoundsView {
   int64_t *x[3], *v[3], *u[3];  // P+G fractional bits; x from the corner of cell (0, 0, 0), not wrapped since
                                 // the last list; u: null where the rule has none
+  RoundsPlace* place;
   int64_t* fields[kMostNumbers];
   const uint8_t* type;
   const uint32_t* id;
 };
 
-// The first step of a batch that was not possible here, or not certain to be; kNoStep: none.
+// Of a batch's steps, from 1; kNoStep: none.
 struct RoundsControl {
-  uint32_t doubt;
-  uint32_t old;  // the step after which the list serves no longer
+  uint32_t doubt;                          // the first that was not possible here, or not certain to be
+  uint32_t old;                            // the one after which the list serves no longer
+  uint32_t near_stale[kLongestBatch + 2];  // whether the step finds its near lists so
 };
 
 // Cells, dense over the lattice's box: which there are, and how many particles each may have held since the
@@ -54,11 +81,20 @@ struct RoundsCells {
 struct RoundsList {
   const uint32_t *entries, *counts;  // [row * stride + particle]: index, and above it the image
   size_t stride;
-  int64_t shift[27][3];      // of an image, in visible units
-  const int64_t* listed[3];  // visible places when the list was made
-  double allowed2;           // square of the displacement that it serves for, visible units
+  uint32_t shift[27][3];      // of an image, in visible units, the lowest 32 bits
+  const RoundsPlace* listed;  // where particles were when the list was made
+  double allowed2;            // square of the displacement that it serves for, visible units
 };
 inline constexpr int kPartnerBits = 27;
+inline constexpr uint32_t kNoImage = 13;
+
+// Those of a list that were within a thinner skin at a later step: most steps go over these alone. The step
+// that finds them stale goes over the whole list, and leaves new ones on the way.
+struct RoundsNear {
+  uint32_t *entries, *counts;  // as a list's
+  RoundsPlace* listed;
+  double reach2, allowed2;
+};
 
 // Of a bonded program: [row * stride + particle], as its list. Each end keeps its own numbers.
 struct RoundsBonds {
@@ -71,10 +107,10 @@ struct RoundsBonds {
   int position_frac;
   int64_t period[3];  // visible units; 0: the box does not repeat
 
-  CUBOCT_DEVICE int64_t value(const Fetch& f, size_t slot) const {
-    if (static_cast<graph::Source>(f.source) == graph::Source::bond_field) return from[f.index][slot];
-    return constants[kind[slot] * static_cast<uint32_t>(constant_count) + f.index];
+  CUBOCT_DEVICE int64_t constant(int number, size_t slot) const {
+    return constants[kind[slot] * static_cast<uint32_t>(constant_count) + static_cast<uint32_t>(number)];
   }
+  CUBOCT_DEVICE void keep(int number, size_t slot) const { to[number][slot] = from[number][slot]; }
   // `apart` becomes that of the partner's image beside `own`. Whether their cells are neighbours: in a ring
   // of three the image that is so may be farther away than another.
   CUBOCT_DEVICE bool meet(const int64_t (&own)[3], int64_t (&apart)[3]) const {
@@ -82,7 +118,9 @@ struct RoundsBonds {
     for (int a = 0; a < 3; ++a) {
       if (period[a] > 0) {
         const int64_t half = apart[a] + period[a] / 2;
-        apart[a] -= (half >= 0 ? half / period[a] : -((period[a] - 1 - half) / period[a])) * period[a];
+        // Seldom so; and a division of 64 bits takes a hundred instructions.
+        if (half < 0 || half >= period[a])
+          apart[a] -= (half >= 0 ? half / period[a] : -((period[a] - 1 - half) / period[a])) * period[a];
       }
       int64_t cells = ((own[a] + apart[a]) >> position_frac) - (own[a] >> position_frac);
       if (period[a] > 0 && (cells < -1 || cells > 1)) {
@@ -96,272 +134,142 @@ struct RoundsBonds {
   }
 };
 
-struct RoundsRegisters {
-  int64_t at[kMostRegisters];
+// A pair that a thread meets.
+struct RoundsPair {
+  uint32_t i, j;
+  uint32_t own_type, other_type;
+  int64_t apart[3];  // visible units
+  size_t slot;       // of a bond
 };
 
-CUBOCT_DEVICE inline int64_t odd_rounding(int64_t a, int s) {
-  return s == 0 ? a : (a + (int64_t{1} << (s - 1)) - (a < 0)) >> s;
-}
-
-CUBOCT_DEVICE inline int leading_place(int64_t a) {
-  return a <= 0 ? -1 : leading_bit(static_cast<uint64_t>(a));
-}
-
-// False where a check found what does not fit.
-CUBOCT_DEVICE inline bool operate(const Span<Operation>& code, const CodeTable* tables, RoundsRegisters& r) {
-  using graph::Op;
-  bool fits = true;
-  for (int n = 0; n < code.count; ++n) {
-    const Operation& o = code.data[n];
-    const int64_t a = r.at[o.in[0]], b = r.at[o.in[1]];
-    int64_t value = 0;
-    switch (static_cast<Op>(o.op)) {
-      case Op::constant:
-        value = o.low;
-        break;
-      case Op::input:
-        continue;
-      case Op::add:
-        value = a + b;
-        break;
-      case Op::sub:
-        value = a - b;
-        break;
-      case Op::neg:
-        value = -a;
-        break;
-      case Op::shl:
-        value = a << o.shift;
-        break;
-      case Op::round:
-        value = odd_rounding(a, o.shift);
-        break;
-      case Op::floor:
-        value = a >> o.shift;
-        break;
-      case Op::mul:
-        value = odd_rounding(a * b, o.shift);
-        break;
-      case Op::mac:
-        value = a + odd_rounding(b * r.at[o.in[2]], o.shift);
-        break;
-      case Op::dot:
-        for (int k = 0; k < o.inputs / 2; ++k) value += r.at[o.in[k]] * r.at[o.in[o.inputs / 2 + k]];
-        value = odd_rounding(value, o.shift);
-        break;
-      case Op::lookup: {
-        const CodeTable& table = tables[o.table];
-        value = table_value(table, static_cast<uint64_t>(a), static_cast<uint32_t>(b) << table.index_bits);
-        break;
-      }
-      case Op::lt:
-        value = a < b;
-        break;
-      case Op::le:
-        value = a <= b;
-        break;
-      case Op::eq:
-        value = a == b;
-        break;
-      case Op::both:
-        value = a & b;
-        break;
-      case Op::either:
-        value = a | b;
-        break;
-      case Op::negate:
-        value = 1 - a;
-        break;
-      case Op::select:
-        value = a ? b : r.at[o.in[2]];
-        break;
-      case Op::min:
-        value = a < b ? a : b;
-        break;
-      case Op::max:
-        value = a < b ? b : a;
-        break;
-      case Op::abs:
-        value = a < 0 ? -a : a;
-        break;
-      case Op::clamp:
-      case Op::within:
-        value = a < o.low ? o.low : a > o.high ? o.high : a;
-        break;
-      case Op::msb:
-        value = leading_place(a);
-        break;
-      case Op::align: {
-        const int by = o.shift - leading_place(a) / o.width * o.width;
-        value = a <= 0 ? 0 : by >= 0 ? a << by : a >> -by;
-        break;
-      }
-      case Op::shift:
-        value = b >= 0 ? a << b : odd_rounding(a, static_cast<int>(-b));
-        break;
-      case Op::check:
-        value = wrap(a, o.width);
-        fits = fits && (value == a || b == 0);
-        break;
-      case Op::noise: {
-        const int64_t c = r.at[o.in[2]];
-        const uint64_t mixed = Hash().add(o.low).add(a < b ? a : b).add(a < b ? b : a).add(c).value();
-        value = static_cast<int64_t>(mixed) >> (64 - o.width);
-        break;
-      }
-    }
-    r.at[o.out] = value;
-  }
-  return fits;
-}
+// What a finish makes of a particle that moves.
+struct RoundsMotion {
+  int64_t v[3], u[3], drift[3];
+};
 
 // A round of one step, from one copy of the state; the last one makes the other copy.
-struct RoundsStep {
-  RoundCode code;
+struct RoundsFrame {
   RoundsView from, to;  // fields of `to`: those that the round writes
   RoundsList list;
+  RoundsNear near;
   RoundsCells cells;
   RoundsBonds bonds;
-  int guard, frac;  // G; P+G
-  bool last;
+  const TableEntry* entries;                       // of a program that is compiled
+  const int64_t *type_constants, *pair_constants;  // [constant][type], [constant][own type][other type]
+  int guard, frac;                                 // G; P+G
+  bool first, last;
   uint64_t step;
   uint32_t number;  // of the step in its batch, from 1
   RoundsControl* control;
 
   CUBOCT_DEVICE bool idle() const { return control->doubt <= number || control->old < number; }
+  CUBOCT_DEVICE int64_t own_x(int axis, uint32_t i) const {
+    return from.x[axis][i] & ((int64_t{1} << frac) - 1);
+  }
+  CUBOCT_DEVICE int64_t own_u(int axis, uint32_t i) const {
+    return from.u[0] != nullptr ? from.u[axis][i] : 0;
+  }
+  CUBOCT_DEVICE RoundsPlace place_of(const int64_t (&x)[3], uint32_t type) const {
+    RoundsPlace place;
+    for (int a = 0; a < 3; ++a) place.x[a] = static_cast<uint32_t>(x[a] >> guard);
+    place.type = type;
+    return place;
+  }
+};
 
-  CUBOCT_DEVICE void operator()(uint32_t i) const {
+// Graphs has
+//   kBonded, kSums  a program with bonds of its own; how many numbers its sums have, at least 1
+//   Own             what all pairs of a particle share, filled in by begin(frame, i, own)
+//   pair(frame, own, pair, sums, fits)  whether the pair counts: then its terms are in the sums, and its
+//                   bond has its new numbers; `fits` becomes false where a check found what does not fit
+//   broken(frame, own, slot), keep(frame, slot)  of a bond that is not met
+//   finish(frame, i, own, sums, motion, fits)  writes fields; in the last round makes the motion
+template <class Graphs>
+struct RoundsStep : RoundsFrame, Graphs {
+  CUBOCT_DEVICE void operator()(uint32_t i, typename Graphs::Own own) const {
     if (idle()) return;
-    int64_t sums[kMostNumbers];
-    bool fits = meet(i, sums);
-    RoundsRegisters r;
-    operate(code.finish_constants, code.finish_tables, r);
-    for (int k = 0; k < code.finish_fetch.count; ++k) {
-      const Fetch& f = code.finish_fetch.data[k];
-      r.at[f.to] = static_cast<graph::Source>(f.source) == graph::Source::sum ? sums[f.index] : own(f, i);
-    }
-    fits = operate(code.finish, code.finish_tables, r) && fits;
-    for (int k = 0; k < code.writes.count; ++k)
-      to.fields[code.writes.data[k].to][i] = r.at[code.writes.data[k].from];
-    if (last) fits = move(i, r) && fits;
+    int64_t sums[Graphs::kSums];
+    for (int k = 0; k < Graphs::kSums; ++k) sums[k] = 0;
+    this->begin(*this, i, own);
+    bool fits = true;
+    if constexpr (Graphs::kBonded)
+      meet_bonds(i, own, sums, fits);
+    else
+      meet_near(i, own, sums, fits);
+    RoundsMotion motion;
+    for (int a = 0; a < 3; ++a) motion.v[a] = from.v[a][i], motion.u[a] = motion.drift[a] = 0;
+    this->finish(*this, i, own, sums, motion, fits);
+    if (last) fits = move(i, motion) && fits;
     if (!fits) atomic_min(&control->doubt, number);
   }
 
  private:
-  CUBOCT_DEVICE int64_t own(const Fetch& f, uint32_t i) const {
-    switch (static_cast<graph::Source>(f.source)) {
-      case graph::Source::own_x:
-        return from.x[f.axis][i] & ((int64_t{1} << frac) - 1);
-      case graph::Source::own_v:
-        return from.v[f.axis][i];
-      case graph::Source::own_u:
-        return from.u[0] != nullptr ? from.u[f.axis][i] : 0;
-      case graph::Source::own_constant:
-        return code.type_constants[f.index * code.types + from.type[i]];
-      case graph::Source::own_field:
-        return from.fields[f.index][i];
-      case graph::Source::own_id:
-        return from.id[i];
-      default:  // step
-        return static_cast<int64_t>(step);
-    }
-  }
-  CUBOCT_DEVICE int64_t of_pair(const Fetch& f, uint32_t i, uint32_t j, const int64_t (&apart)[3],
-                                size_t slot) const {
-    switch (static_cast<graph::Source>(f.source)) {
-      case graph::Source::apart:
-        return apart[f.axis];
-      case graph::Source::other_v:
-        return from.v[f.axis][j];
-      case graph::Source::other_constant:
-        return code.type_constants[f.index * code.types + from.type[j]];
-      case graph::Source::pair_constant:
-        return code.pair_constants[(f.index * code.types + from.type[i]) * code.types + from.type[j]];
-      case graph::Source::other_field:
-        return from.fields[f.index][j];
-      case graph::Source::other_id:
-        return from.id[j];
-      default:  // of the bond
-        return bonds.value(f, slot);
-    }
-  }
+  using Own = typename Graphs::Own;
+  using Sums = int64_t[Graphs::kSums];
 
-  // A bond that is not met.
-  CUBOCT_DEVICE bool broken(size_t slot) const {
-    if (code.broken < 0) return false;
-    RoundsRegisters r;
-    operate(code.broken_constants, code.broken_tables, r);
-    for (int k = 0; k < code.broken_fetch.count; ++k)
-      r.at[code.broken_fetch.data[k].to] = bonds.value(code.broken_fetch.data[k], slot);
-    operate(code.broken_code, code.broken_tables, r);
-    return r.at[code.broken] != 0;
-  }
-  CUBOCT_DEVICE void keep_bond(size_t slot) const {
-    for (int k = 0; k < code.bond_writes.count; ++k) {
-      const int number = code.bond_writes.data[k].to;
-      bonds.to[number][slot] = bonds.from[number][slot];
-    }
-  }
-
-  CUBOCT_DEVICE bool meet(uint32_t i, int64_t (&sums)[kMostNumbers]) const {
-    for (int k = 0; k < code.terms.count; ++k) sums[k] = 0;
-    RoundsRegisters r;
-    operate(code.constants, code.tables, r);
-    for (int k = 0; k < code.own.count; ++k) r.at[code.own.data[k].to] = own(code.own.data[k], i);
+  CUBOCT_DEVICE void meet_bonds(uint32_t i, Own& own, Sums& sums, bool& fits) const {
     const int64_t x[3] = {from.x[0][i] >> guard, from.x[1][i] >> guard, from.x[2][i] >> guard};
     const uint32_t count = list.counts[i];
-    bool fits = true;
+    RoundsPair pair{};
+    pair.i = i, pair.own_type = from.type[i];
     for (uint32_t row = 0; row < count; ++row) {
-      const size_t slot = row * list.stride + i;
-      const uint32_t entry = list.entries[slot];
-      const uint32_t j = entry & ((1u << kPartnerBits) - 1);
-      const int64_t(&shift)[3] = list.shift[entry >> kPartnerBits];
-      int64_t apart[3];
-      for (int a = 0; a < 3; ++a) apart[a] = (from.x[a][j] >> guard) + shift[a] - x[a];
-      if (bonds.on && !bonds.meet(x, apart)) {
-        fits = fits && broken(slot);
-        keep_bond(slot);
+      pair.slot = row * list.stride + i;
+      pair.j = list.entries[pair.slot] & ((1u << kPartnerBits) - 1);
+      for (int a = 0; a < 3; ++a) pair.apart[a] = (from.x[a][pair.j] >> guard) - x[a];
+      if (!bonds.meet(x, pair.apart)) {
+        fits = fits && this->broken(*this, own, pair.slot);
+        this->keep(*this, pair.slot);
         continue;
       }
-      for (int k = 0; k < code.early_fetch.count; ++k)
-        r.at[code.early_fetch.data[k].to] = of_pair(code.early_fetch.data[k], i, j, apart, slot);
-      operate(code.early, code.tables, r);
-      if (r.at[code.when] == 0) {
-        keep_bond(slot);
-        continue;
-      }
-      for (int k = 0; k < code.late_fetch.count; ++k)
-        r.at[code.late_fetch.data[k].to] = of_pair(code.late_fetch.data[k], i, j, apart, slot);
-      fits = operate(code.late, code.tables, r) && fits;
-      for (int k = 0; k < code.terms.count; ++k) sums[k] += r.at[code.terms.data[k].from];
-      for (int k = 0; k < code.bond_writes.count; ++k)
-        bonds.to[code.bond_writes.data[k].to][slot] = r.at[code.bond_writes.data[k].from];
+      pair.other_type = from.type[pair.j];
+      if (!this->pair(*this, own, pair, sums, fits)) this->keep(*this, pair.slot);
     }
-    return fits;
   }
 
-  CUBOCT_DEVICE bool move(uint32_t i, const RoundsRegisters& r) const {
+  // The first round makes the near lists that others go over.
+  CUBOCT_DEVICE void meet_near(uint32_t i, Own& own, Sums& sums, bool& fits) const {
+    const RoundsPlace here = from.place[i];
+    const bool makes = first && control->near_stale[number] != 0;
+    const uint32_t* entries = (makes ? list.entries : near.entries) + i;
+    const uint32_t count = makes ? list.counts[i] : near.counts[i];
+    uint32_t kept = 0, coming = count > 0 ? entries[0] : 0;
+    RoundsPair pair{};
+    pair.i = i, pair.own_type = here.type;
+    for (uint32_t row = 0; row < count; ++row) {
+      const uint32_t entry = coming;
+      if (row + 1 < count) coming = entries[(row + 1) * list.stride];
+      pair.j = entry & ((1u << kPartnerBits) - 1);
+      RoundsPlace there = from.place[pair.j];
+      if (const uint32_t image = entry >> kPartnerBits; image != kNoImage)
+        for (int a = 0; a < 3; ++a) there.x[a] += list.shift[image][a];
+      if (makes) {
+        if (moved2_of(here, there) > near.reach2) continue;
+        near.entries[kept++ * list.stride + i] = entry;
+      }
+      for (int a = 0; a < 3; ++a) pair.apart[a] = apart_of(here, there, a);
+      pair.other_type = there.type;
+      this->pair(*this, own, pair, sums, fits);
+    }
+    if (makes) near.counts[i] = kept, near.listed[i] = here;
+  }
+
+  CUBOCT_DEVICE bool move(uint32_t i, const RoundsMotion& motion) const {
     int64_t x[3];
     bool crosses = false;
-    double moved2 = 0;
     for (int a = 0; a < 3; ++a) {
       const int64_t before = from.x[a][i];
-      x[a] = before;
-      int64_t v = from.v[a][i], u = 0;
-      if (a < code.v.count) {
-        v = r.at[code.v.data[a].from];
-        x[a] += r.at[code.drift.data[a].from];
-      }
-      if (a < code.u.count) u = r.at[code.u.data[a].from];
+      x[a] = before + motion.drift[a];
       to.x[a][i] = x[a];
-      to.v[a][i] = v;
-      if (to.u[0] != nullptr) to.u[a][i] = u;
+      to.v[a][i] = motion.v[a];
+      if (to.u[0] != nullptr) to.u[a][i] = motion.u[a];
       crosses = crosses || (x[a] >> frac) != (before >> frac);
-      const auto apart = static_cast<double>((x[a] >> guard) - list.listed[a][i]);
-      moved2 += apart * apart;
     }
-    if (moved2 > list.allowed2) atomic_min(&control->old, number);
+    if constexpr (!Graphs::kBonded) {
+      const RoundsPlace place = place_of(x, from.place[i].type);
+      to.place[i] = place;
+      if (moved2_of(list.listed[i], place) > list.allowed2) atomic_min(&control->old, number);
+      if (moved2_of(near.listed[i], place) > near.allowed2) control->near_stale[number + 1] = 1;
+    }
     return !crosses || enter(i, x);
   }
 

@@ -61,19 +61,24 @@ struct RoundsGather {
   RoundsView from, to;
   uint8_t* type;
   uint32_t *id, *entered;
-  int64_t* listed[3];
+  RoundsPlace *listed, *coarse;
   int32_t* home[3];
-  int guard, frac, numbers;
+  int guard, frac, coarse_shift, numbers;
   CUBOCT_DEVICE void operator()(uint32_t k) const {
     const uint32_t i = order[k];
+    RoundsPlace place, rough{};
     for (int a = 0; a < 3; ++a) {
       const int64_t x = from.x[a][i];
       to.x[a][k] = x;
       to.v[a][k] = from.v[a][i];
       if (to.u[0] != nullptr) to.u[a][k] = from.u[a][i];
-      listed[a][k] = x >> guard;
+      place.x[a] = static_cast<uint32_t>(x >> guard);
+      rough.x[a] = static_cast<uint32_t>(x >> (guard + coarse_shift));
       home[a][k] = static_cast<int32_t>(x >> frac);
     }
+    place.type = from.type[i];
+    to.place[k] = listed[k] = place;
+    coarse[k] = rough;
     for (int f = 0; f < numbers; ++f) to.fields[f][k] = from.fields[f][i];
     type[k] = from.type[i];
     id[k] = from.id[i];
@@ -81,18 +86,14 @@ struct RoundsGather {
   }
 };
 
-// Where particles stay in their order: what a list starts from.
+// Where particles stay in their order: the cells that they start from.
 struct RoundsMark {
   RoundsView at;
   uint32_t* entered;
-  int64_t* listed[3];
   int32_t* home[3];
-  int guard, frac;
+  int frac;
   CUBOCT_DEVICE void operator()(uint32_t i) const {
-    for (int a = 0; a < 3; ++a) {
-      listed[a][i] = at.x[a][i] >> guard;
-      home[a][i] = static_cast<int32_t>(at.x[a][i] >> frac);
-    }
+    for (int a = 0; a < 3; ++a) home[a][i] = static_cast<int32_t>(at.x[a][i] >> frac);
     entered[i] = 1u << 13;
   }
 };
@@ -100,23 +101,27 @@ struct RoundsMark {
 // How many partners are within `reach2`; those beyond `width` rows are not kept.
 struct RoundsMakeList {
   RoundsBins bins;
-  const int64_t* x[3];  // visible
+  const int64_t* x[3];  // P+G fractional bits
+  int guard;
+  const RoundsPlace* coarse;  // in units of 2^shift visible ones, in which two bins' widths fit 31 bits
+  int coarse_shift;
   const uint32_t *first, *count;
-  double reach2;
+  uint64_t reach2;  // of these
   uint32_t *entries, *counts;
   uint32_t width;
   size_t stride;
 
   CUBOCT_DEVICE uint32_t operator()(uint32_t i) const {
-    const int64_t own[3] = {x[0][i], x[1][i], x[2][i]};
+    const int64_t own[3] = {x[0][i] >> guard, x[1][i] >> guard, x[2][i] >> guard};
     const int home[3] = {bins.along(own[0], 0), bins.along(own[1], 1), bins.along(own[2], 2)};
+    const RoundsPlace here = coarse[i];
     uint32_t found = 0;
     for (int z = -1; z <= 1; ++z)
       for (int y = -1; y <= 1; ++y)
         for (int w = -1; w <= 1; ++w) {
           const int off[3] = {w, y, z};
           int bin[3];
-          int64_t shift[3];
+          uint32_t shift[3];
           uint32_t image = 0;
           bool there = true;
           for (int a = 2; a >= 0; --a) {
@@ -127,17 +132,18 @@ struct RoundsMakeList {
             else if (bin[a] >= bins.count[a])
               ring = 1, bin[a] -= bins.count[a];
             there = there && (ring == 0 || bins.wraps[a]);
-            shift[a] = ring * bins.length[a];
+            shift[a] = static_cast<uint32_t>(ring * (bins.length[a] >> coarse_shift));
             image = 3 * image + static_cast<uint32_t>(ring + 1);
           }
           if (!there) continue;
           const uint32_t at = bins.of(bin), end = first[at] + count[at];
           for (uint32_t j = first[at]; j < end; ++j) {
             if (j == i) continue;
-            double square = 0;
+            const RoundsPlace other = coarse[j];
+            uint64_t square = 0;
             for (int a = 0; a < 3; ++a) {
-              const auto apart = static_cast<double>(x[a][j] + shift[a] - own[a]);
-              square += apart * apart;
+              const auto apart = static_cast<int32_t>(other.x[a] + shift[a] - here.x[a]);
+              square += static_cast<uint64_t>(product(apart, apart));
             }
             if (square > reach2) continue;
             if (found < width) entries[found * stride + i] = j | image << kPartnerBits;
@@ -149,15 +155,24 @@ struct RoundsMakeList {
   }
 };
 
-struct RoundsReset {
-  RoundsControl* control;
-  CUBOCT_DEVICE void operator()(uint32_t) const { *control = {kNoStep, kNoStep}; }
+struct RoundsCount {
+  const uint32_t* counts;
+  CUBOCT_DEVICE bool idle() const { return false; }
+  CUBOCT_DEVICE uint64_t operator()(uint32_t i) const { return counts[i]; }
+};
+struct RoundsZero {
+  uint64_t* sum;
+  CUBOCT_DEVICE void operator()(uint32_t) const { *sum = 0; }
 };
 
-struct RoundsCopy {
-  const int64_t* from;
-  int64_t* to;
-  CUBOCT_DEVICE void operator()(uint32_t i) const { to[i] = from[i]; }
+// Before a batch. `near_stale`: whether its first step finds its near lists so.
+struct RoundsReset {
+  RoundsControl* control;
+  bool near_stale;
+  CUBOCT_DEVICE void operator()(uint32_t) const {
+    *control = {kNoStep, kNoStep, {}};
+    control->near_stale[1] = near_stale;
+  }
 };
 
 }  // namespace cuboct::gpu

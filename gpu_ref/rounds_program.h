@@ -24,13 +24,15 @@ struct RoundCode {
   Span<Fetch> own, early_fetch, late_fetch, finish_fetch;
   Span<Store> terms, writes, v, u, drift;
   const CodeTable *tables, *finish_tables;
-  const int64_t *type_constants, *pair_constants;  // [constant][type], [constant][own type][other type]
-  int types, when;
+  int types, when, registers;
   Span<Store> bond_writes;
   Span<Operation> broken_constants, broken_code;
   Span<Fetch> broken_fetch;
   const CodeTable* broken_tables;
-  int broken;
+  int broken, broken_registers;
+
+  // Registers and sums of a thread.
+  size_t numbers() const { return static_cast<size_t>(registers + terms.count + broken_registers); }
 };
 
 // Holds what RoundCodes point to.
@@ -39,8 +41,8 @@ class ProgramOnDevice {
   // InputError as of code_of.
   ProgramOnDevice(Stream& stream, const graph::FixedProgram& program) : stream_(stream) {
     const std::vector<RoundLists> lists = code_of(program);
-    const int64_t* type_constants = put_constants(program.type_constants);
-    const int64_t* pair_constants = put_constants(program.pair_constants);
+    type_constants_ = put_constants(program.type_constants);
+    pair_constants_ = put_constants(program.pair_constants);
     for (size_t k = 0; k < lists.size(); ++k) {
       const RoundLists& of = lists[k];
       rounds_.push_back({put(of.constants, operations_),
@@ -59,19 +61,22 @@ class ProgramOnDevice {
                          put(of.drift, stores_),
                          put_tables(program.rounds[k].pair),
                          put_tables(program.rounds[k].finish),
-                         type_constants,
-                         pair_constants,
                          program.types,
                          of.when,
+                         of.registers,
                          put(of.bond_writes, stores_),
                          put(of.broken_constants, operations_),
                          put(of.broken_code, operations_),
                          put(of.broken_fetch, fetches_),
                          put_tables(program.broken),
-                         of.broken});
+                         of.broken,
+                         of.broken_registers});
     }
   }
   const std::vector<RoundCode>& rounds() const { return rounds_; }
+  // [constant][type], [constant][own type][other type]
+  const int64_t* type_constants() const { return type_constants_; }
+  const int64_t* pair_constants() const { return pair_constants_; }
 
  private:
   template <typename T>
@@ -102,6 +107,7 @@ class ProgramOnDevice {
   std::vector<Array<CodeTable>> tables_;
   std::vector<Array<int32_t>> entries_;
   std::vector<Array<int64_t>> constants_;
+  const int64_t *type_constants_ = nullptr, *pair_constants_ = nullptr;
   std::vector<RoundCode> rounds_;
 };
 

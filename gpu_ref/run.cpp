@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "gpu_ref/nvrtc.h"
 #include "gpu_ref/rounds_engine.h"
 #include "hw/engine_kind.h"
+#include "model/base/resources.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -224,7 +226,8 @@ class TextRunner : public IntegerEngine {
   }
   cuboct::Counters counters() const override {
     cuboct::Counters counters = engine_->counters();
-    notes_ = {{"precision", to_string(Arithmetic::fixed)}};
+    notes_ = engine_->notes();
+    notes_.emplace_back("precision", to_string(Arithmetic::fixed));
     if (hooks_.finish) hooks_.finish(counters, notes_);
     return counters;
   }
@@ -239,13 +242,21 @@ class TextRunner : public IntegerEngine {
 std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan, const GpuChoice& choice,
                                             CheckpointReader* from) {
   auto run = integer_run(scene, plan, from, [&](const State& state) {
-    return std::make_unique<TextRunner>(make_rounds_engine(plan, state, choice.engine), choice.hooks);
+    return std::make_unique<TextRunner>(
+        make_rounds_engine(plan, state, choice.engine, rounds_compiler(choice.interpret)), choice.hooks);
   });
   if (choice.hooks.ready) choice.hooks.ready();
   return run;
 }
 
 }  // namespace
+
+CompileRounds rounds_compiler(bool interpret) {
+  if (interpret) return {};
+  return [](const std::string& source, const std::string& architecture) {
+    return compiled_file(source, architecture, cache_directory());
+  };
+}
 
 EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choice) {
   EngineKind kind = choice.arithmetic == Arithmetic::fixed

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gpu_ref/engine.h"
+#include "gpu_ref/rounds_engine.h"
 #include "model/run/record.h"
 
 namespace cuboct::gpu {
@@ -21,7 +22,11 @@ struct GpuChoice {
   Arithmetic arithmetic = Arithmetic::fixed;
   Options engine;
   Hooks hooks;
+  bool interpret = false;  // a rule of text, rather than to compile it
 };
+
+// Of rules of text, with its code where cuboct keeps what it can make again; none: they are interpreted.
+CompileRounds rounds_compiler(bool interpret);
 
 // `plan` is the scene's. References are kept.
 // Counters of the trace: the engine's own (Counters) and those of the hooks.

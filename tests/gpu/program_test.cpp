@@ -398,5 +398,16 @@ TEST(GpuLooks, AreAllOrAFew) {
   EXPECT_EQ(gpu::looks_of({0, 7}, 1'000'000'000), (std::vector<uint64_t>{0, 7}));
 }
 
+TEST_F(GpuProgram, SaysHowARuleOfTextRuns) {
+  const auto says = [&](const std::string& options) {
+    const std::string out = bench_.path("text.trace");
+    const Answer answer = program("scenes/rules/heat.toml --steps 3 --out " + out + options);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return lines_with(answer.out, "kernels");
+  };
+  EXPECT_EQ(says(" --rule-code interpreted"), "the rule's kernels are interpreted\n");
+  EXPECT_EQ(says(""), "the rule's kernels are interpreted: CUDA's compiler knows no architecture 'host'\n");
+}
+
 }  // namespace
 }  // namespace cuboct

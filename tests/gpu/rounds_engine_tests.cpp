@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "gpu_ref/rounds_engine.h"
 #include "hw/engine_kind.h"
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "model/trace/compare.h"
+#include "tests/gpu/host_compiler.h"
+#include "tests/gpu/torn_glass.h"
 #include "tests/support/cases.h"
 #include "tests/support/dice.h"
 
@@ -100,35 +100,45 @@ TEST(GpuRounds, FaultsAriseAsInGolden) {
   EXPECT_EQ(compared.faults, all_faults().size());
 }
 
-// Glass that is torn apart so fast that halves of it lose sight of one another.
 TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   const std::string rules = CUBOCT_SOURCE_DIR "/scenes/rules/";
-  std::ifstream in(rules + "glass.toml");
-  std::string torn((std::istreambuf_iterator<char>(in)), {});
-  for (const char* speed : {"0, 0.5, 0", "0, -0.5, 0"}) {
-    const size_t at = torn.find(speed);
-    ASSERT_NE(at, std::string::npos);
-    torn.replace(at, std::string(speed).size(), speed[3] == '-' ? "0, -400, 0" : "0, 400, 0");
-  }
-  // No bond lasts: those of the grips would leave their tables.
-  const size_t lasting = torn.find("start.hard");
-  ASSERT_NE(lasting, std::string::npos);
-  torn.erase(lasting, torn.find('\n', lasting) - lasting);
-  for (const Scene& scene : {read_scene(rules + "heat.toml"), parse_scene(torn, rules + "torn.toml")}) {
+  for (const Scene& scene : {read_scene(rules + "heat.toml"), torn_glass(rules)}) {
     const Plan plan = program_plan_of(scene, Arch());
     const auto golden = integer_run(scene, plan, nullptr);
-    const auto device = integer_run(
-        scene, plan, nullptr, [&](const State& state) { return gpu::make_rounds_engine(plan, state, {}); });
-    std::vector<uint64_t> expected{golden->hash()}, found{device->hash()};
-    golden->advance(90, &expected), device->advance(90, &found);
-    EXPECT_EQ(found, expected);
-    if (plan.program->rows == nullptr) continue;
-    const std::vector<double> damage = device->damage();
-    EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.25; }), 20);
-    EXPECT_EQ(damage, golden->damage());
-    const Counters counters = device->counters();
-    EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
+    std::vector<uint64_t> expected{golden->hash()};
+    golden->advance(90, &expected);
+    for (const bool compiled : {false, true}) {
+      const gpu::CompileRounds compile = compiled ? host_compiler("rule") : gpu::CompileRounds();
+      const auto device = integer_run(scene, plan, nullptr, [&](const State& state) {
+        return gpu::make_rounds_engine(plan, state, {}, compile);
+      });
+      std::vector<uint64_t> found{device->hash()};
+      device->advance(90, &found);
+      EXPECT_EQ(found, expected);
+      EXPECT_EQ(note(device->notes(), "kernels"), compiled ? "compiled for host" : "interpreted");
+      if (plan.program->rows == nullptr) continue;
+      const std::vector<double> damage = device->damage();
+      EXPECT_GT(std::ranges::count_if(damage, [](double d) { return d > 0.25; }), 20);
+      EXPECT_EQ(damage, golden->damage());
+      const Counters counters = device->counters();
+      EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
+    }
   }
+}
+
+// P of 30 bits: two cells apart are 2^31, and lists are made over coarser places.
+TEST(GpuRounds, FinestPlacesHaveGoldensBits) {
+  const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/rules/copper.toml");
+  Arch arch;
+  arch.widths.position_frac = 30;
+  const Plan plan = program_plan_of(scene, arch);
+  ASSERT_EQ(plan.program->program.position_frac, 30);
+  const auto golden = integer_run(scene, plan, nullptr);
+  const auto device = integer_run(
+      scene, plan, nullptr, [&](const State& state) { return gpu::make_rounds_engine(plan, state, {}); });
+  std::vector<uint64_t> expected, found;
+  golden->advance(12, &expected), device->advance(12, &found);
+  EXPECT_EQ(found, expected);
 }
 
 }  // namespace

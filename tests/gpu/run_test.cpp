@@ -80,7 +80,8 @@ std::unique_ptr<Engine> resume_real_engine(const Scene&, const Body&, Arithmetic
                                            const Memory&) {
   return nullptr;
 }
-std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan&, const State&, const Options&) {
+std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan&, const State&, const Options&,
+                                                  const CompileRounds&) {
   return nullptr;
 }
 

@@ -1,0 +1,11 @@
+# cmake -D OUT=file.cpp -D ROOT=DIR -D FILES=a.h,b.h -P embed.cmake: what a compiled round includes, as a C++ table.
+set(text "// SPDX-License-Identifier: MIT\n#include \"gpu_ref/rounds_text.h\"\n\nnamespace cuboct::gpu {\n\n")
+string(APPEND text "const std::vector<std::pair<std::string, std::string>>& round_headers() {\n")
+string(APPEND text "  static const std::vector<std::pair<std::string, std::string>> headers{\n")
+string(REPLACE "," ";" FILES "${FILES}")
+foreach(source ${FILES})
+  file(READ ${ROOT}/${source} body)
+  string(APPEND text "{\"${source}\", R\"header~(${body})header~\"},\n")
+endforeach()
+string(APPEND text "};\n  return headers;\n}\n\n}  // namespace cuboct::gpu\n")
+file(WRITE ${OUT} "${text}")
