@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "model/base/hash.h"
 #include "model/graph/graph.h"
 #include "model/graph/interval.h"
+#include "model/graph/noise.h"
 #include "model/graph/table_value.h"
 
 namespace cuboct::graph {
@@ -46,11 +46,6 @@ constexpr Int aligned(Int a, int place, int step) {
 template <class Int>
 constexpr Int shifted(Int a, int by) {
   return by >= 0 ? a << by : rounded_odd(a, -by);
-}
-
-inline int64_t noise_of(int64_t seed, int64_t a, int64_t b, int64_t c, int width) {
-  const uint64_t mixed = Hash().add(seed).add(std::min(a, b)).add(std::max(a, b)).add(c).value();
-  return static_cast<int64_t>(mixed) >> (64 - width);
 }
 
 template <class Int>

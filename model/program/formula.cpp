@@ -30,6 +30,8 @@ constexpr Function kFunctions[] = {
     {"abs", 1, "abs(a)"},
     {"norm", 1, "norm(v)"},
     {"dot", 2, "dot(v, w)"},
+    {"noise", 1, "noise(seed)"},
+    {"noises", 1, "noises(seed)"},
     {"min", 2, "min(a, b)"},
     {"max", 2, "max(a, b)"},
     {"select", 3, "select(truth, a, b)"},
@@ -253,6 +255,7 @@ class Compiler {
   Value called(const Expression& e) {
     const std::string& name = e.text;
     if (name == "sqrt") return root(e);
+    if (name == "noise" || name == "noises") return drawn(e);
     if (name == "abs") {
       const Value a = number_of(e.of[0]);
       return number(graph_.add(RealOp::absolute, a.node[0]), a.dimension);
@@ -286,6 +289,21 @@ class Compiler {
       part /= 2;
     }
     return number(graph_.add(RealOp::square_root, a.node[0]), half);
+  }
+  Value drawn(const Expression& e) {
+    if (!scope_.noise_)
+      fail(e, fmt::format("nothing is drawn here: '{}' is of rounds and of starts", e.text),
+           "a field may hold what a finish or a start draws");
+    const Value seed = plain(e.of[0]);
+    const RealNode& node = graph_.at(seed.node[0]);
+    if (node.op != RealOp::constant) fail(e.of[0], "a seed is a constant", "noise(1), or a parameter");
+    if (!(node.value >= 0 && node.value <= kMostSeed && node.value == std::floor(node.value)))
+      fail(e.of[0], fmt::format("a seed is a whole number from 0 to {}, not {}", kMostSeed, node.value));
+    const uint32_t stream = kNoiseStreams * static_cast<uint32_t>(node.value);
+    if (e.text == "noise") return number(graph_.input(RealSource::noise, stream), {});
+    Value v{Kind::vector, {}, {}};
+    for (uint32_t k = 0; k < 3; ++k) v.node[k] = graph_.input(RealSource::noise, stream + 1 + k);
+    return v;
   }
   Value selected(const Expression& e) {
     const NodeId which = truth_of(e.of[0]);

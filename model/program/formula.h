@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <set>
@@ -34,6 +35,10 @@ struct TableFunction {
   std::function<NodeId(NodeId at, bool of_slope)> make;
 };
 
+// A seed of noise has four streams: of a number, and of x, y and z of a vector.
+inline constexpr uint32_t kNoiseStreams = 4;
+inline constexpr uint32_t kMostSeed = (uint32_t{1} << 30) - 1;
+
 // The names that a formula may use. A name's nodes are made when it is first used.
 class Scope {
  public:
@@ -57,6 +62,7 @@ class Scope {
   void define_function(const std::string& name, TableFunction function) {
     functions_[name] = std::move(function);
   }
+  void allow_noise() { noise_ = true; }
 
   // Throws what the formula's `fail` throws.
   Value value_of(const Formula& formula);
@@ -69,7 +75,7 @@ class Scope {
   Value named(const Expression& name);
 
   RealGraph& graph_;
-  bool units_;
+  bool units_, noise_ = false;
   std::map<std::string, std::function<Value()>> names_;
   std::map<std::string, TableFunction> functions_;
   const std::map<std::string, Formula>* lets_ = nullptr;

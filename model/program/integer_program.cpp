@@ -10,6 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/contract/pair_program.h"
+#include "model/graph/noise.h"
 #include "model/graph/parity.h"
 #include "model/program/bond_graph.h"
 #include "model/program/for_ever.h"
@@ -24,6 +25,7 @@ using Source = RealSource;
 
 constexpr int kFieldBits = 46;  // of a field that goes on
 constexpr int kSumBits = 50;    // of a sum
+constexpr int64_t kMostIds = int64_t{1} << 32, kMostSteps = int64_t{1} << 48;
 
 class Program {
  public:
@@ -150,6 +152,16 @@ class Program {
       out_.program.type_constants.push_back({"mass", values, kMassFrac});
     }
     return Integers::scaled(graph::read_constant(b, out_.program, source, mass_), kMassFrac, base_.mass);
+  }
+  // As the engine of doubles has it.
+  Scaled noise(Builder& b, graph::Source other_id, uint32_t stream) const {
+    const auto id = [&](graph::Source source) { return b.input(source, 0, 0, {0, kMostIds - 1}); };
+    const int own = id(graph::Source::own_id), other = id(other_id);
+    int step = b.input(graph::Source::step, 0, 0, {0, kMostSteps});
+    if (rule_.first_step > 0) step = b.add(step, b.constant(static_cast<int64_t>(rule_.first_step)));
+    const int drawn = b.noise(own, other, step, stream, graph::kNoiseBits);
+    const int odd = b.named(b.add(b.shl(drawn, 1), b.constant(1)), "noise");
+    return Integers::scaled(odd, graph::kNoiseBits, std::ldexp(graph::kNoiseUnit, graph::kNoiseBits));
   }
   Scaled velocity(Builder& b, graph::Source source, uint32_t axis) const {
     if (static_cast<int>(axis) >= base_.axes) return Scaled::of(0);
@@ -336,18 +348,23 @@ class Program {
         return read_bond(b, input.index);
       case Source::made:
         return Scaled::of(1);
+      case Source::noise:
+        return noise(b, graph::Source::other_id, input.index);
       default:
         return Scaled::of(base_.dt);
     }
   }
 
-  // The sums that become the force count as velocities do: a term is one rounding away from a kick.
+  // The sums that become the force, or are added to it, count as velocities do: a term is one rounding away
+  // from a kick.
   bool is_force(size_t k, size_t term) const {
     if (rule_.still || k + 1 != rule_.rounds.size()) return false;
     return std::ranges::any_of(rule_.rounds[k].made, [&](const ProgramWrite& write) {
-      const RealNode& node = rule_.rounds[k].finish.at(write.node);
-      return write.number >= rule_.force && write.number < rule_.force + 3 && node.op == RealOp::input &&
-             node.input == RealInput{Source::sum, static_cast<uint32_t>(term)};
+      if (write.number < rule_.force || write.number >= rule_.force + 3) return false;
+      return std::ranges::any_of(addends_of(rule_.rounds[k].finish, write.node), [&](const Addend& part) {
+        const RealNode& node = rule_.rounds[k].finish.at(part.node);
+        return node.op == RealOp::input && node.input == RealInput{Source::sum, static_cast<uint32_t>(term)};
+      });
     });
   }
   // What a finish adds to a field as it is, but for a constant: the sum of its terms changes fields by what
@@ -466,6 +483,8 @@ class Program {
         return element(b, graph::Source::own_constant);
       case Source::own_field:
         return read_field(b, graph::Source::own_field, input.index);
+      case Source::noise:
+        return noise(b, graph::Source::own_id, input.index);
       case Source::position:
         refuse_rule("a finish of integers knows no position: a particle knows its place in its cell alone");
       default:
@@ -491,6 +510,7 @@ class Program {
     round.writes.push_back({field, static_cast<int>(component), b.named(node, to.name)});
   }
 
+  // Each part of a force is rounded once, so that none coarsens another.
   void move(Lowering& finish, Builder& b, const ProgramRound& from) {
     graph::Motion& motion = out_.program.motion;
     if (rule_.still) {
@@ -504,8 +524,14 @@ class Program {
     for (int a = 0; a < base_.axes; ++a) {
       const uint32_t number = rule_.force + static_cast<uint32_t>(a);
       const auto write = std::ranges::find(from.made, number, &ProgramWrite::number);
-      kicks.push_back(
-          finish.integers().node_in(finish.value(write->node), kick_unit(), base_.widths.velocity_frac()));
+      std::optional<int> kick;
+      for (const Addend& part : addends_of(from.finish, write->node)) {
+        int node =
+            finish.integers().node_in(finish.value(part.node), kick_unit(), base_.widths.velocity_frac());
+        if (part.minus) node = b.neg(node);
+        kick = kick ? b.add(*kick, node) : node;
+      }
+      kicks.push_back(*kick);
     }
     add_motion(b, out_.program, base_, kicks);
   }

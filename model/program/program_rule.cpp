@@ -12,6 +12,7 @@
 
 #include "model/base/error.h"
 #include "model/base/hash.h"
+#include "model/graph/noise.h"
 #include "model/program/near_rows.h"
 #include "model/program/real_block.h"
 #include "model/rules/reference_bonds.h"
@@ -87,6 +88,7 @@ class ProgramTerms final : public RoundsTerms {
   }
 
   void velocities(const std::vector<Vec3>& v) override { v_ = v; }
+  void time(uint64_t step) override { time_ = static_cast<int64_t>(program_.first_step + step); }
   void begin(const std::vector<Vec3>& x) override {
     for (size_t i = 0; i < x.size(); ++i)
       if (!x[i].allFinite())
@@ -149,12 +151,13 @@ class ProgramTerms final : public RoundsTerms {
     gather(particle, rows);
     run(block, rows);
     for (uint32_t a = 0; a < 3; ++a) {
-      const std::optional<size_t> term = force_term(round, a);
-      if (!term) return sum;
-      for (size_t k = 0; k < rows.lanes(); ++k)
-        if (block.of(round.when[*term])[k] != 0)
-          for (int b = 0; b < 3; ++b)
-            sum(b, a) += rows.difference[static_cast<size_t>(b)][k] * block.of(round.terms[*term])[k];
+      for (const auto& [term, minus] : force_terms(round, a))
+        for (size_t k = 0; k < rows.lanes(); ++k)
+          if (block.of(round.when[term])[k] != 0)
+            for (int b = 0; b < 3; ++b) {
+              const double part = rows.difference[static_cast<size_t>(b)][k] * block.of(round.terms[term])[k];
+              sum(b, a) += minus ? -part : part;
+            }
     }
     return sum / (2 * volume);
   }
@@ -236,14 +239,16 @@ class ProgramTerms final : public RoundsTerms {
     if (writes_bonds()) bond_kept_ = bond_;
   }
   bool writes_bonds() const { return std::ranges::any_of(program_.bond, &ProgramField::kept); }
-  std::optional<size_t> force_term(const ProgramRound& round, uint32_t axis) const {
-    for (const ProgramWrite& write : round.made) {
-      const RealNode& node = round.finish.at(write.node);
-      if (write.number == program_.force + axis && node.op == RealOp::input &&
-          node.input.source == Source::sum)
-        return node.input.index;
+  // The sums that the force is made of.
+  std::vector<std::pair<size_t, bool>> force_terms(const ProgramRound& round, uint32_t axis) const {
+    std::vector<std::pair<size_t, bool>> terms;
+    const auto write = std::ranges::find(round.made, program_.force + axis, &ProgramWrite::number);
+    for (const Addend& part : addends_of(round.finish, write->node)) {
+      const RealNode& node = round.finish.at(part.node);
+      if (node.op == RealOp::input && node.input.source == Source::sum)
+        terms.emplace_back(node.input.index, part.minus);
     }
-    return std::nullopt;
+    return terms;
   }
 
   // Calls work(rows) for the particles [begin, end), in ascending order.
@@ -306,9 +311,16 @@ class ProgramTerms final : public RoundsTerms {
       case Source::own_element:
       case Source::other_element:
         return element_[i];
+      case Source::noise:
+        return noise(input.index, i, i);
       default:
         return dt_;
     }
+  }
+  double noise(uint32_t stream, size_t i, size_t j) const {
+    const int64_t drawn =
+        graph::noise_of(stream, static_cast<int64_t>(i), static_cast<int64_t>(j), time_, graph::kNoiseBits);
+    return static_cast<double>(2 * drawn + 1) * graph::kNoiseUnit;
   }
   void fill_own(const RealInput& input, size_t begin, size_t count, double* to) const {
     for (size_t k = 0; k < count; ++k) to[k] = own_of(input, begin + k);
@@ -330,6 +342,9 @@ class ProgramTerms final : public RoundsTerms {
           break;
         case Source::bond_field:
           fill_bond(input, rows.bond, rows.lanes(), to);
+          break;
+        case Source::noise:
+          for (size_t k = 0; k < rows.lanes(); ++k) to[k] = noise(input.index, rows.own[k], rows.other[k]);
           break;
         case Source::other_velocity:
         case Source::other_mass:
@@ -439,6 +454,7 @@ class ProgramTerms final : public RoundsTerms {
 
   const RuleProgram& program_;
   double dt_;
+  int64_t time_ = graph::kNoTime;
   std::vector<Vec3> x0_;
   const std::vector<Vec3>* x_;
   std::vector<Vec3> v_, force_;

@@ -9,6 +9,16 @@ namespace cuboct {
 namespace {
 
 constexpr double kMostFactors = 12;  // of a power that is made of products
+constexpr size_t kMostAddends = 32;
+
+void add_parts(const RealGraph& graph, Addend part, std::vector<Addend>& to) {
+  const RealNode& node = graph.at(part.node);
+  const bool sum = node.op == RealOp::add || node.op == RealOp::subtract;
+  if (to.size() > kMostAddends || (!sum && node.op != RealOp::negate)) return to.push_back(part);
+  if (!sum) return add_parts(graph, {node.of[0], !part.minus}, to);
+  add_parts(graph, {node.of[0], part.minus}, to);
+  add_parts(graph, {node.of[1], part.minus != (node.op == RealOp::subtract)}, to);
+}
 
 }  // namespace
 
@@ -77,6 +87,12 @@ NodeId RealGraph::whole_power(NodeId a, int exponent) {
   if (exponent == 1) return a;
   const NodeId half = whole_power(a, exponent / 2), square = add(RealOp::multiply, half, half);
   return exponent % 2 == 0 ? square : add(RealOp::multiply, square, a);
+}
+
+std::vector<Addend> addends_of(const RealGraph& graph, NodeId id) {
+  std::vector<Addend> parts;
+  add_parts(graph, {id, false}, parts);
+  return parts.size() > kMostAddends ? std::vector<Addend>{{id, false}} : parts;
 }
 
 bool RealGraph::reads(RealSource source) const {

@@ -60,7 +60,8 @@ enum class RealSource : uint8_t {
   time_step,    // s
   own_element,  // 2^k of the k-th element of the rule's potential
   other_element,
-  made,  // 1 where a step is made, 0 where the state is only looked at
+  made,   // 1 where a step is made, 0 where the state is only looked at
+  noise,  // of own and other, of a particle alone of own; index: its stream
 };
 
 struct RealInput {
@@ -162,5 +163,12 @@ class RealGraph {
   std::vector<RealNode> nodes_;
   std::map<std::tuple<RealOp, std::array<NodeId, 3>, uint64_t, RealInput, const CubicTable*>, NodeId> known_;
 };
+
+// A node as a sum: of a - (b - c) these are a, -b and c. A sum of very many is one part, itself.
+struct Addend {
+  NodeId node = 0;
+  bool minus = false;
+};
+std::vector<Addend> addends_of(const RealGraph& graph, NodeId id);
 
 }  // namespace cuboct

@@ -15,9 +15,9 @@ using Kind = Value::Kind;
 using Source = RealSource;
 
 constexpr Dimension kEnergy = quantity::energy.dimension;
-constexpr const char* kReserved[] = {"d",     "r",         "d0",     "r0",       "v",       "x",
-                                     "mass",  "dt",        "pi",     "true",     "false",   "pitch",
-                                     "reach", kForceField, "volume", "position", "velocity"};
+constexpr const char* kReserved[] = {"d",     "r",         "d0",     "r0",       "v",        "x",
+                                     "mass",  "dt",        "pi",     "true",     "false",    "pitch",
+                                     "reach", kForceField, "volume", "position", "velocity", "id"};
 
 int numbers_in(Kind kind) { return kind == Kind::vector ? 3 : 1; }
 
@@ -244,6 +244,7 @@ class Understanding {
       const RuleText::Field& field = text_.particle[k];
       Scope scope(program_.start, text_.units);
       define_constants(scope);
+      scope.allow_noise();
       scope.define_vector("x", Source::position, 0, quantity::length.dimension);
       scope.define_vector("v", Source::own_velocity, 0, quantity::velocity.dimension);
       scope.define_number("mass", Source::own_mass, 0, quantity::mass.dimension);
@@ -253,6 +254,7 @@ class Understanding {
     for (size_t k = 0; k < text_.bond.size(); ++k) {
       Scope scope(program_.bond_start, text_.units);
       define_constants(scope);
+      scope.allow_noise();
       define_pair(scope);
       define_particle(scope, Source::own_field, "_i", text_.particle.size());
       define_particle(scope, Source::other_field, "_j", text_.particle.size());
@@ -278,12 +280,14 @@ class Understanding {
     round.name = from.name;
     Scope pair(round.pair, text_.units);
     define_bond_terms(pair);
+    pair.allow_noise();
     for (const RuleText::Write& write : from.bonds) write_bond(write, pair, round);
     std::vector<SumValue> sums;
     for (const RuleText::Sum& sum : from.sums) sums.push_back(sum_of(sum, pair, round));
     Scope finish(round.finish, text_.units);
     define_constants(finish);
     define_finish(finish);
+    finish.allow_noise();
     for (const SumValue& sum : sums) {
       if (sum.value.kind == Kind::vector)
         finish.define_vector(sum.name, Source::sum, sum.first, sum.value.dimension);
@@ -409,6 +413,7 @@ class Understanding {
     std::vector<std::string> names;
     if (pair.reads(Source::difference)) names.emplace_back("position");
     if (pair.reads(Source::other_velocity)) names.emplace_back("velocity");
+    if (pair.reads(Source::noise)) names.emplace_back("id");
     for (const ProgramField& field : program_.particle)
       if (reads(pair, field, Source::other_field)) names.push_back(field.name);
     return names;
@@ -433,6 +438,9 @@ class Understanding {
     rule.name = text_.name;
     rule.bonds = text_.range;
     rule.moves = !text_.still;
+    rule.noise = std::ranges::any_of(program_.rounds, [](const ProgramRound& round) {
+      return round.pair.reads(Source::noise) || round.finish.reads(Source::noise);
+    });
     for (size_t k = 0; k < program_.rounds.size(); ++k)
       rule.rounds[k].exchanged = exchanged(program_.rounds[k].pair);
     for (size_t k = 0; k < text_.particle.size(); ++k) {

@@ -58,6 +58,8 @@ struct RuleProgram {
   std::optional<NodeId> pair_energy_at, particle_energy_at, broken_at;
   std::vector<DeclarationLine> settings;
   std::shared_ptr<const EmbeddedAtoms> potential;  // whose tables the graphs refer to; may be null
+  // Of noise the first step is this one: those before it belong to the runs that this one goes on from.
+  uint64_t first_step = 0;
   // By type of particles 2^k of the k-th element of the potential; empty: all are the first.
   std::vector<double> element;
 };

@@ -97,7 +97,7 @@ class Engine final : public RealEngine {
     unpack(v_, body.v);
     if (pd_) unpack(u_, body.u);
   }
-  void place(const Body& body) override {
+  void place(const Body& body, uint64_t) override {
     Real farthest2 = 0;
     for (size_t i = 0; i < particles_; ++i) {
       Real moved2 = 0;

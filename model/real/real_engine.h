@@ -18,8 +18,8 @@ class RealEngine {
   virtual void step(uint64_t number) = 0;
   // x, v and u by id.
   virtual void read(Body& body) const = 0;
-  // The state becomes that of `body`, with as many particles of the same types.
-  virtual void place(const Body& body) = 0;
+  // The state becomes that of `body`, with as many particles of the same types, after so many steps.
+  virtual void place(const Body& body, uint64_t step) = 0;
   virtual std::vector<Vec3> forces() const = 0;
   // The bonds of a rule of rounds give way as they do in a step, without one.
   virtual void give_way() {}

@@ -51,7 +51,7 @@ void Reference::step(uint64_t steps) {
 
 void Reference::place(const Body& body) {
   stale_ = true;
-  engine_->place(body);
+  engine_->place(body, step_);
 }
 
 void Reference::give_way() { engine_->give_way(); }

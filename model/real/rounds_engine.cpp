@@ -30,7 +30,8 @@ class RoundsEngine final : public RealEngine {
         type_(body.type),
         rounds_(*rounds_of(rule)),
         remembers_(has_memory(rule)),
-        terms_(rounds_.bind(rule, as_packed(body), periodic, options.threads)) {
+        terms_(rounds_.bind(rule, as_packed(body), periodic, options.threads)),
+        steps_(options.first_step) {
     recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
     refresh();
@@ -42,12 +43,14 @@ class RoundsEngine final : public RealEngine {
       if (options_.integrator == Integrator::semi_implicit_euler) {
         if (!fresh_ || remembers_) evaluate(true);
         move(dt, dt);
+        ++steps_;
         fresh_ = false;
         // What keeps nothing is looked at as the next step will look: a step does not end in a state of which
         // the rounds cannot be run.
         if (!remembers_) evaluate(false);
       } else {
         move(dt / 2, dt);
+        ++steps_;
         evaluate(true);
         move(dt / 2, 0);
         fresh_ = false;
@@ -58,8 +61,8 @@ class RoundsEngine final : public RealEngine {
   }
 
   void read(Body& body) const override { body.x = x_, body.v = v_, body.u = u_; }
-  void place(const Body& body) override {
-    x_ = body.x, v_ = body.v;
+  void place(const Body& body, uint64_t step) override {
+    x_ = body.x, v_ = body.v, steps_ = step;
     if (!u_.empty()) u_ = body.u;
     fresh_ = false;
   }
@@ -86,6 +89,7 @@ class RoundsEngine final : public RealEngine {
   // The rounds, one after another: none begins before all particles have finished the one before it.
   void evaluate(bool keeps) const {
     terms_->velocities(v_);
+    terms_->time(steps_);
     terms_->begin(x_);
     const size_t parts = (x_.size() + kRows - 1) / kRows;
     for (size_t round = 0; round < rounds_.declaration().rounds.size(); ++round) {
@@ -131,6 +135,7 @@ class RoundsEngine final : public RealEngine {
   const RoundsRule& rounds_;  // of rule_
   const bool remembers_;
   std::unique_ptr<RoundsTerms> terms_;
+  uint64_t steps_;              // that led to x_
   mutable bool fresh_ = false;  // the terms are those of x_
   double fastest_ = 0;
 };

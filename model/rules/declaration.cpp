@@ -55,7 +55,7 @@ std::string list(const std::vector<std::string>& names) {
 }  // namespace
 
 void check(const RuleDeclaration& rule) {
-  std::set<std::string> names{"position", "velocity"};
+  std::set<std::string> names{"position", "velocity", "id"};
   check_fields(rule, rule.particle, names);
   check_fields(rule, rule.bond, names);
   check_fields(rule, rule.constants, names);
@@ -64,7 +64,7 @@ void check(const RuleDeclaration& rule) {
   if (rule.rounds.empty()) refuse(rule, "it has no round");
   if (rule.bonds == BondRange::current && !(rule.bond.empty() && rule.constants.empty()))
     refuse(rule, "its bonds are those of the moment, and hold nothing");
-  std::set<std::string> known{"position", "velocity"};
+  std::set<std::string> known{"position", "velocity", "id"};
   for (const std::string& name : rule.ready) {
     if (!has(rule.particle, name)) refuse(rule, fmt::format("no particle holds '{}'", name));
     known.insert(name);
@@ -97,6 +97,7 @@ std::vector<DeclarationLine> lines_of(const RuleDeclaration& rule) {
   lines.push_back({"rule", rule.name,
                    rule.bonds == BondRange::reference ? "bonds of the body as packed"
                                                       : "bonds between those that are near now"});
+  if (rule.noise) lines.push_back({"noise", "drawn anew in each step", "a hash of ids and step"});
   const auto fields = [&](const char* name, const std::vector<RuleField>& of) {
     if (of.empty()) return;
     const int bonds = numbers_of(of, true);

@@ -49,6 +49,7 @@ struct RuleDeclaration {
   std::vector<RuleField> shown = {};   // of a particle, for those who look at it: RoundsTerms::shown()
   std::vector<std::string> kept = {};  // particle fields that go on from step to step
   bool moves = true;                   // else no particle does, and no round makes a force
+  bool noise = false;                  // its rounds draw random numbers, other ones in each step
 };
 
 // The field that the last round makes and the step adds to the momentum, N.

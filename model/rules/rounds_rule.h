@@ -32,6 +32,8 @@ class RoundsTerms {
   virtual void begin(const std::vector<Vec3>& x) = 0;
   // Before begin(), for terms that read them: m/s, by id, half a step before the positions.
   virtual void velocities(const std::vector<Vec3>&) {}
+  // Before begin(), for terms that draw noise: how many steps led to the positions.
+  virtual void time(uint64_t) {}
   // The pair term of a round, which sums over a particle's bonds by ascending id of the other. With `keeps`
   // the bonds' own fields change: a step was made; else the state is only looked at.
   virtual void pair(size_t round, size_t begin, size_t end, bool keeps) = 0;

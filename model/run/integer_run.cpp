@@ -160,7 +160,7 @@ void IntegerRun::renew() {
     else if (field.kept)
       to += static_cast<ptrdiff_t>(field.numbers() * program.rows->other.size());
   }
-  engine_->place(body_);
+  engine_->place(body_, step_);
   engine_->recall(kept);
 }
 

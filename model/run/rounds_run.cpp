@@ -25,6 +25,11 @@ Body completed(const Scene& scene, const Body& start) {
   return body;
 }
 
+RealOptions from_step(RealOptions options, uint64_t step) {
+  options.first_step = step;
+  return options;
+}
+
 }  // namespace
 
 RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
@@ -32,7 +37,7 @@ RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& op
     : scene_(scene),
       step_(step),
       body_(completed(scene, body)),
-      engine_(make_rounds_engine(scene.rule, body_, scene.periodic, options)),
+      engine_(make_rounds_engine(scene.rule, body_, scene.periodic, from_step(options, step))),
       options_(std::make_unique<RealOptions>(options)),
       cell_edge_(cell_edge) {}
 RoundsRun::~RoundsRun() = default;

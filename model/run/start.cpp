@@ -9,6 +9,7 @@
 #include "model/base/input_file.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
+#include "model/scene/first_step.h"
 #include "model/scene/scene_parts.h"
 #include "model/trace/guarded_trace.h"
 #include "model/trace/trace_head.h"
@@ -100,6 +101,7 @@ void begin_at(Scene& scene, const std::string& directory) {
   for (Probe& probe : scene.probes)
     if (probe.from_start)
       for (const uint32_t id : probe.set.ids) probe.begin.push_back(body.x[id]);
+  begin_at_step(scene.rule, left.first_step + left.step);
   scene.began = Began{directory, left.engine, left.step};
 }
 

@@ -230,6 +230,7 @@ void check_static_rule(const ConfigTable& root, const Rule& rule) {
   if (!declaration.kept.empty())
     at.fail(fmt::format("static loading leaves out time, and the rule's field '{}' goes on with it",
                         declaration.kept.front()));
+  if (declaration.noise) at.fail("static loading leaves out time, and the rule draws noise in each step");
   if (!(rounds->stiffness() > 0))
     at.fail("static loading needs the stiffness of the rule", "stiffness = \"...\" in N/m, among its keys");
 }

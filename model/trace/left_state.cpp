@@ -134,6 +134,8 @@ LeftState read_left_state(const std::string& path) {
   left.engine = in.text(in.root(), "engine");
   left.packing = in.number<uint64_t>(in.root(), "packing");
   left.types = in.names(in.root(), "types");
+  if (in.has_attribute(in.root(), "first_step"))
+    left.first_step = in.number<uint64_t>(in.root(), "first_step");
   if (in.has(in.root(), "bodies"))
     read_real(in, left);
   else if (in.has(in.root(), "frames") && in.has_attribute(in.root(), "cell_edge"))

@@ -14,6 +14,7 @@ namespace cuboct {
 struct LeftState {
   std::string engine;
   uint64_t step = 0;
+  uint64_t first_step = 0;         // of a rule of text: the steps of runs that this one went on from
   uint64_t packing = 0;            // model/trace/trace_head.h
   std::vector<std::string> types;  // names, "material" or "material/constraint"
   // By id, in SI; of a fixed engine with its integers in `exact`. `u` is empty where nothing is held by

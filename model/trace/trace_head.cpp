@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "model/base/hash.h"
-
+#include "model/scene/first_step.h"
 #include "model/trace/hdf5_file.h"
 
 namespace cuboct {
@@ -93,6 +93,7 @@ void write_head(const Writer& out, const TraceHead& head) {
     out.numbers<double>(root, "masses", masses);
   }
   out.number<uint64_t>(root, "packing", packing_hash(scene));
+  if (const uint64_t first = first_step_of(scene.rule)) out.number<uint64_t>(root, "first_step", first);
   {
     // Datasets: HDF5 holds no attribute above 64 KiB.
     const Handle source = out.group(root, "source");

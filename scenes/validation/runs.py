@@ -12,7 +12,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 
 def cuboct(build, scene, out, changes=None, arch=None, engine="lattice"):
-    """Runs a scene of this folder, with some `key = value` lines replaced. Returns the directory of the results.
+    """Runs a scene, by its path from this folder, with some `key = value` lines replaced. Returns the directory of the results.
 
     A key that stands in several lines is told apart by a comment: "uniform # everything".
     """
@@ -24,7 +24,7 @@ def cuboct(build, scene, out, changes=None, arch=None, engine="lattice"):
         text, count = re.subn(line, lambda _, name=name, value=value: f"{name} = {value} ", text)
         if count != 1:
             raise SystemExit(f"{scene} has {count} lines '{key} = ...'")
-    path = os.path.join(out, scene)
+    path = os.path.join(out, os.path.basename(scene))
     with open(path, "w", encoding="utf-8") as copy:
         copy.write(text)
     command = [os.path.join(build, "cuboct"), "run", path, "--engine", engine, "--out", os.path.join(out, "run")]
@@ -59,8 +59,8 @@ def first_frame(run):
     return np.array(box)[[0, 4, 8]], rows[:, 1:4].astype(float), rows[:, 8:11].astype(float)
 
 
-def lammps(run, out, pair, dt, steps, every):
-    """The same start in LAMMPS at constant energy: an array of (step, kT, energy per particle, pressure)."""
+def lammps(run, out, pair, dt, steps, every, more=""):
+    """The same start in LAMMPS: an array of (step, kT, energy per particle, pressure). At constant energy, but for `more` lines."""
     os.makedirs(out, exist_ok=True)
     box, x, v = first_frame(run)
     with open(os.path.join(out, "start.data"), "w", encoding="utf-8") as data:
@@ -80,12 +80,13 @@ neighbor 0.3 bin
 neigh_modify every 1 delay 0 check yes
 timestep {dt}
 fix nve all nve
+{more}
 thermo_style custom step temp etotal press
 thermo_modify norm yes format float %.15g
 thermo {every}
 run {steps}
 """)
-    done = subprocess.run(["lmp", "-in", "in.lmp", "-log", "none"], cwd=out, capture_output=True, text=True,
+    done = subprocess.run([os.environ.get("LMP", "lmp"), "-in", "in.lmp", "-log", "none"], cwd=out, capture_output=True, text=True,
                           check=False, env={**os.environ, "OMP_NUM_THREADS": "1"})
     rows = re.findall(r"(?m)^ *(\d+) +(\S+) +(\S+) +(\S+) *$", done.stdout)
     if done.returncode != 0 or len(rows) < steps // every:

@@ -83,7 +83,7 @@ TEST(Ranks, HoldGoldensBitsOfPrograms) {
 
 // Fields, bonds and several rounds across ranks.
 TEST(Ranks, HoldGoldensBitsOfRulesOfText) {
-  for (const std::string name : {"heat", "glass", "plastic", "copper"}) {
+  for (const std::string name : {"heat", "glass", "plastic", "copper", "dpd"}) {
     SCOPED_TRACE(name);
     const std::string file = CUBOCT_SOURCE_DIR "/scenes/rules/" + name + ".toml";
     const std::vector<StageName> stages = stages_of(file);

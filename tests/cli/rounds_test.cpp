@@ -57,6 +57,26 @@ TEST_F(RoundsTest, RunBreaksAndReports) {
   EXPECT_EQ(nlohmann::json::parse(whole.out)["largest_damage"]["value"], 0);
 }
 
+// No noise comes twice, and a run in parts is that in one, whichever engine makes a part.
+TEST_F(RoundsTest, NoiseCountsOnFromRunToRun) {
+  const auto hash = [&](const char* engine, const char* steps, const std::string& from, const char* out) {
+    std::vector<std::string> words{"run",           "scenes/rules/langevin.toml",
+                                   "--json",        "--engine",
+                                   engine,          "--steps",
+                                   steps,           "--out",
+                                   bench_.path(out)};
+    if (!from.empty()) words.insert(words.end(), {"--from", bench_.path(from)});
+    const Answer answer = bench_.cuboct(words);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return nlohmann::json::parse(answer.out)["state_hash"]["value"].get<std::string>();
+  };
+  const std::string check = bench_.cuboct({"check", "scenes/rules/dpd.toml"}).out;
+  for (const char* part : {"drawn anew in each step", "exchanges position, velocity, id"})
+    EXPECT_NE(check.find(part), std::string::npos) << check;
+  hash("lattice", "6", "", "a"), hash("golden", "5", "a", "b");
+  EXPECT_EQ(hash("lattice", "4", "b", "c"), hash("lattice", "15", "", "d"));
+}
+
 // Stages and --from hand broken bonds on: what one stage broke the next one has.
 TEST_F(RoundsTest, StagesKeepWhatBroke) {
   const std::string path = scene(scene_with(kGlass + kBreaks, kPulled) +

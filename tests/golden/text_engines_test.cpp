@@ -57,7 +57,8 @@ TEST_P(TextEngines, LatticeHasGoldensBitsAndGoesOnFromItsCheckpoint) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, TextEngines,
                          testing::Values(TextCase{"heat.toml", 40}, TextCase{"glass.toml", 60},
-                                         TextCase{"plastic.toml", 60}, TextCase{"copper.toml", 20}),
+                                         TextCase{"plastic.toml", 60}, TextCase{"copper.toml", 20},
+                                         TextCase{"langevin.toml", 20}, TextCase{"dpd.toml", 30}),
                          [](const auto& p) { return p.param.scene.substr(0, p.param.scene.find('.')); });
 
 }  // namespace

@@ -102,18 +102,21 @@ TEST(GpuRounds, FaultsAriseAsInGolden) {
 
 TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   const std::string rules = CUBOCT_SOURCE_DIR "/scenes/rules/";
-  for (const Scene& scene : {read_scene(rules + "heat.toml"), torn_glass(rules)}) {
+  using Steps = std::pair<Scene, uint64_t>;
+  for (const auto& [scene, steps] :
+       {Steps(read_scene(rules + "heat.toml"), 90), Steps(torn_glass(rules), 90),
+        Steps(read_scene(rules + "langevin.toml"), 20), Steps(read_scene(rules + "dpd.toml"), 30)}) {
     const Plan plan = program_plan_of(scene, Arch());
     const auto golden = integer_run(scene, plan, nullptr);
     std::vector<uint64_t> expected{golden->hash()};
-    golden->advance(90, &expected);
+    golden->advance(steps, &expected);
     for (const bool compiled : {false, true}) {
       const gpu::CompileRounds compile = compiled ? host_compiler("rule") : gpu::CompileRounds();
       const auto device = integer_run(scene, plan, nullptr, [&](const State& state) {
         return gpu::make_rounds_engine(plan, state, {}, compile);
       });
       std::vector<uint64_t> found{device->hash()};
-      device->advance(90, &found);
+      device->advance(steps, &found);
       EXPECT_EQ(found, expected);
       EXPECT_EQ(note(device->notes(), "kernels"), compiled ? "compiled for host" : "interpreted");
       if (plan.program->rows == nullptr) continue;

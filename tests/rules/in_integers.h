@@ -11,6 +11,7 @@
 #include "model/program/integer_program.h"
 #include "model/program/program_rule.h"
 #include "model/run/integer_run.h"
+#include "model/scene/first_step.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
@@ -19,8 +20,9 @@ inline const std::string kIntegerTexts = CUBOCT_SOURCE_DIR "/scenes/rules/";
 
 // A scene's rule in integers, with cells of its reach, and of what its bonds stretch to.
 struct InIntegers {
-  explicit InIntegers(const std::string& text, int capacity = 16)
+  explicit InIntegers(const std::string& text, int capacity = 16, uint64_t first_step = 0)
       : scene(parse_scene(text, kIntegerTexts + "test.toml")), room(capacity) {
+    begin_at_step(scene.rule, first_step);
     const Rule& rule = scene.rule;
     const bool lasting = has_reference_bonds(rule);
     const double edge = rule.cutoff() * (lasting ? 1 + kBondStretch : 1);

@@ -133,7 +133,7 @@ TEST(Program, ASpringThatYieldsRemembers) {
   double set = 0;
   for (const double opening : {0.0, 5e-6, 1e-5, 3e-5, 2.5e-5, 0.0, -2e-5, 1e-6, 4e-5, 3.9e-5}) {
     body.x[1][0] = 2e-3 + opening;
-    engine->place(body);
+    engine->place(body, 0);
     set = std::max(std::min(set, opening + 1e-5), opening - 1e-5);
     engine->give_way();
     EXPECT_NEAR(engine->forces()[0][0], 1e3 * (opening - set), 1e-9) << opening;
