@@ -55,7 +55,7 @@ LpsErrors lps_errors(LpsDevice& device, RealEngine& reference, const Body& packe
   LpsState state = device.state();
   Body body = packed;
   body.x = std::move(state.x), body.v = std::move(state.v);
-  reference.place(body);
+  reference.place(body, device.step_count());
   if (const auto memory = device.memory(); !memory.empty()) reference.recall(memory);
   const double begin = steady_clock().now();
   for (uint64_t k = 0; k < steps; ++k) reference.step(device.step_count() + k);
