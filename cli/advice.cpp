@@ -99,6 +99,7 @@ const char* what_helps(Fault fault, bool program) {
 }  // namespace
 
 std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& scene) {
+  if (stop.fault == Fault::none) return "";  // the reason is all that is known
   const Cell& c = plan.lattice.cell(stop.cell);
   Vec3 centre;
   for (int a = 0; a < 3; ++a) centre[a] = plan.origin[a] + (c[a] + 0.5) * plan.rule.cell_edge;

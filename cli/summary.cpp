@@ -188,7 +188,8 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
     if (trace.watched)
       items.add("last look", fmt::format("step {}: {}", *trace.watched,
                                          trace.findings.empty() ? "nothing amiss" : "see the warnings"));
-    if (!real) items.add("advice", advice_on(*trace.stop, plan, loaded.scene));
+    if (const std::string advice = real ? "" : advice_on(*trace.stop, plan, loaded.scene); !advice.empty())
+      items.add("advice", advice);
     items.add("stopped", trace.stop->text);
   }
   for (const auto& [name, value] : trace.counters)
