@@ -109,7 +109,8 @@ Items physics(const Loaded& loaded);
 }  // namespace
 
 Items resolve(const Loaded& loaded) {
-  if (!has_machine(loaded.setup.plan)) return physics(loaded);
+  // No node runs a rule of text.
+  if (!has_machine(loaded.setup.plan) || loaded.setup.plan.program != nullptr) return physics(loaded);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const FixedRule& rule = plan.rule;

@@ -189,6 +189,13 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
       section("Crack: " + probe.name, figures);
       continue;
     }
+    if (probe.kind == Probe::Kind::field) {
+      std::vector<std::pair<std::string, std::string>> names{{probe.name + "." + probe.field, ""}};
+      for (const char axis : {'x', 'y', 'z'})
+        names.emplace_back(probe.name + "." + probe.field + "_" + axis, std::string(1, axis));
+      section(probe.field + ": " + probe.name, over_time(trace, dt, names, probe.field));
+      continue;
+    }
     const auto& [kind, title, label, whole, part] = *std::ranges::find(kProbed, probe.kind, &Probed::kind);
     std::vector<std::pair<std::string, std::string>> names{{probe.name + "." + whole, ""}};
     for (int axis = 0; part && axis < 3; ++axis)

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "model/base/output.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -109,6 +111,30 @@ TEST_F(RoundsTest, StagesKeepWhatBroke) {
   const Answer refused = checked(scene_with(kGlass + "fracture_energy = \"4 J/m^2\"\n"));
   EXPECT_EQ(refused.code, 2) << refused.out;
   EXPECT_EQ(refused.err, other.err);
+}
+
+// Copper whose halves run into one another: the table of the embedding ends, and what was done is kept.
+TEST_F(RoundsTest, ADensityBeyondItsTableKeepsTheTrace) {
+  const std::string texts = CUBOCT_SOURCE_DIR "/scenes/rules/texts/";
+  const std::string path = scene(
+      "mass = \"63.546 u\"\npacking = { pitch = \"1.85 angstrom\" }\n"
+      "geometry = { shape = \"box\", min = \"[0, 0, 0] angstrom\", max = \"[6, 6, 6] angstrom\" }\n"
+      "velocity = [ { region = { shape = \"half_space\", point = \"[0, 3.1, 0] angstrom\", normal = \"y\" }, "
+      "uniform = \"[0, 20, 0] km/s\" } ]\nrun = { dt = \"0.2 fs\", steps = 200 }\nrule = { file = \"" +
+      texts + "eam.toml\", potential.file = \"" + texts +
+      "copper.eam.alloy\" }\nprobe = [ { name = \"all\", kind = \"field\", field = \"E\", region = { shape = "
+      "\"sphere\", radius = \"1 m\" } } ]\n");
+  for (const char* engine : {"reference", "golden"}) {
+    const std::string out = bench_.path(engine);
+    const Answer answer = bench_.cuboct({"run", path, "--engine", engine, "--out", out});
+    EXPECT_EQ(answer.code, 1) << answer.err;
+    EXPECT_NE(answer.out.find("the embedding of Cu is asked for at 100."), std::string::npos) << answer.out;
+    EXPECT_EQ(answer.out.find("advice"), std::string::npos) << answer.out;
+    EXPECT_GE(read_trace(out + "/trace.h5").steps(), 9u);
+  }
+  const Answer report = bench_.cuboct({"report", bench_.path("golden")});
+  EXPECT_EQ(report.code, 0) << report.err;
+  EXPECT_NE(read_text(bench_.path("golden/report.html")).find("<h2>E: all"), std::string::npos);
 }
 
 TEST_F(RoundsTest, WrongInputHasItsPlace) {
