@@ -79,7 +79,7 @@ bool CodePass::run(const Scope& scope, BondList& bonds, Sums& sums) const {
   job.type = particles.type.data();
   job.id = particles.id.size() > 0 ? particles.id.data() : nullptr;
   job.shift = reinterpret_cast<const double(*)[3]>(particles.shift.data());
-  job.begin = scope.block.begin, job.end = scope.block.end;
+  job.begin = scope.block.begin;
   job.sums = sum_pointers.data();
   job.wanted = wanted.empty() ? nullptr : wanted.data();
   job.step = static_cast<double>(scope.step);

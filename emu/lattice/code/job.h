@@ -30,8 +30,7 @@ struct Job {
   const uint32_t* id;        // null: the index is the id
   const double (*shift)[3];  // Particles::shift
   uint32_t begin;            // the block's first particle
-  uint32_t end;
-  double* const* sums;  // by term, [index - begin]
+  double* const* sums;       // by term, [index - begin]
 
   const Entry* entries;
   const EntryGroup* groups;
