@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_ref/nvml.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 namespace cuboct::gpu {
@@ -14,37 +13,21 @@ constexpr unsigned kDriverSize = 80;            // NVML_SYSTEM_DRIVER_VERSION_BU
 
 }  // namespace
 
-template <class Function>
-void Nvml::bind(Function& function, const char* name) {
-  function = reinterpret_cast<Function>(dlsym(library_, name));
-  if (function) return;
-  dlclose(library_);
-  throw NvmlError(fmt::format("NVML has no function {}", name));
+Nvml::Nvml(const std::string& library) : library_("NVML", {library}) {
+  library_.bind(call_.init, "nvmlInit_v2");
+  library_.bind(call_.shutdown, "nvmlShutdown");
+  library_.bind(call_.error, "nvmlErrorString");
+  library_.bind(call_.driver, "nvmlSystemGetDriverVersion");
+  library_.bind(call_.by_bus, "nvmlDeviceGetHandleByPciBusId_v2");
+  library_.bind(call_.name, "nvmlDeviceGetName");
+  library_.bind(call_.energy, "nvmlDeviceGetTotalEnergyConsumption");
+  library_.bind(call_.power, "nvmlDeviceGetPowerUsage");
+  library_.bind(call_.clock, "nvmlDeviceGetClockInfo");
+  if (const int answer = call_.init(); answer != kSuccess)
+    throw NvmlError(fmt::format("NVML does not start: {}", call_.error(answer)));
 }
 
-Nvml::Nvml(const std::string& library) {
-  library_ = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library_) throw NvmlError(fmt::format("no library {}", library));
-  bind(call_.init, "nvmlInit_v2");
-  bind(call_.shutdown, "nvmlShutdown");
-  bind(call_.error, "nvmlErrorString");
-  bind(call_.driver, "nvmlSystemGetDriverVersion");
-  bind(call_.by_bus, "nvmlDeviceGetHandleByPciBusId_v2");
-  bind(call_.name, "nvmlDeviceGetName");
-  bind(call_.energy, "nvmlDeviceGetTotalEnergyConsumption");
-  bind(call_.power, "nvmlDeviceGetPowerUsage");
-  bind(call_.clock, "nvmlDeviceGetClockInfo");
-  if (const int answer = call_.init(); answer != kSuccess) {
-    const std::string text = fmt::format("NVML does not start: {}", call_.error(answer));
-    dlclose(library_);
-    throw NvmlError(text);
-  }
-}
-
-Nvml::~Nvml() {
-  call_.shutdown();
-  dlclose(library_);
-}
+Nvml::~Nvml() { call_.shutdown(); }
 
 void Nvml::check(int answer, const char* what) const {
   if (answer != kSuccess) throw NvmlError(fmt::format("NVML gives no {}: {}", what, call_.error(answer)));

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "gpu_ref/opened_library.h"
+
 namespace cuboct::gpu {
 
 inline constexpr char kNvmlLibrary[] = "libnvidia-ml.so.1";
@@ -42,11 +44,9 @@ class Nvml {
   std::optional<uint32_t> sm_clock(Board board) const;  // MHz, the moment's; nothing on any error
 
  private:
-  template <class Function>
-  void bind(Function& function, const char* name);
   void check(int answer, const char* what) const;
 
-  void* library_ = nullptr;
+  OpenedLibrary<NvmlError> library_;
   struct Functions {
     int (*init)() = nullptr;
     int (*shutdown)() = nullptr;

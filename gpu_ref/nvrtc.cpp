@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "gpu_ref/nvrtc.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <iterator>
@@ -11,7 +9,7 @@
 
 #include "gpu_ref/rounds_text.h"
 #include "model/base/error.h"
-#include "model/base/hash.h"
+#include "model/base/host_compiler.h"
 #include "model/base/output.h"
 
 namespace cuboct::gpu {
@@ -35,37 +33,19 @@ std::string first_error(const std::string& log) {
   return log.substr(begin, log.find('\n', at) - begin);
 }
 
-void add_text(Hash& hash, const std::string& text) {
-  hash.add(static_cast<int64_t>(text.size()));
-  for (const char c : text) hash.add(c);
-}
-
 }  // namespace
 
-template <class Function>
-void Nvrtc::bind(Function& function, const char* name) {
-  function = reinterpret_cast<Function>(dlsym(library_, name));
-  if (function) return;
-  dlclose(library_);
-  throw NvrtcError(fmt::format("CUDA's compiler has no function {}", name));
+Nvrtc::Nvrtc(const std::vector<std::string>& libraries) : library_("CUDA's compiler", libraries) {
+  library_.bind(call_.version, "nvrtcVersion");
+  library_.bind(call_.error, "nvrtcGetErrorString");
+  library_.bind(call_.create, "nvrtcCreateProgram");
+  library_.bind(call_.destroy, "nvrtcDestroyProgram");
+  library_.bind(call_.compile, "nvrtcCompileProgram");
+  library_.bind(call_.log_size, "nvrtcGetProgramLogSize");
+  library_.bind(call_.log, "nvrtcGetProgramLog");
+  library_.bind(call_.code_size, "nvrtcGetCUBINSize");
+  library_.bind(call_.code, "nvrtcGetCUBIN");
 }
-
-Nvrtc::Nvrtc(const std::vector<std::string>& libraries) {
-  for (const std::string& library : libraries)
-    if (!library_) library_ = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library_) throw NvrtcError(fmt::format("no library {}", fmt::join(libraries, ", ")));
-  bind(call_.version, "nvrtcVersion");
-  bind(call_.error, "nvrtcGetErrorString");
-  bind(call_.create, "nvrtcCreateProgram");
-  bind(call_.destroy, "nvrtcDestroyProgram");
-  bind(call_.compile, "nvrtcCompileProgram");
-  bind(call_.log_size, "nvrtcGetProgramLogSize");
-  bind(call_.log, "nvrtcGetProgramLog");
-  bind(call_.code_size, "nvrtcGetCUBINSize");
-  bind(call_.code, "nvrtcGetCUBIN");
-}
-
-Nvrtc::~Nvrtc() { dlclose(library_); }
 
 void Nvrtc::check(int answer, const char* what) const {
   if (answer != 0) throw NvrtcError(fmt::format("CUDA's compiler {}: {}", what, call_.error(answer)));
@@ -117,13 +97,12 @@ std::string compiled_file(const std::string& source, const std::string& architec
   if (directory.empty())
     throw NvrtcError("neither XDG_CACHE_HOME nor HOME is set: no place to keep compiled rules");
   const Nvrtc nvrtc;
-  Hash hash;
-  for (const std::string& part : {source, nvrtc.version(), architecture, std::string(kIntegers)})
-    add_text(hash, part);
-  for (const char* option : kOptions) add_text(hash, option);
-  for (const auto& [name, text] : round_headers()) add_text(hash, name), add_text(hash, text);
+  std::vector<std::string> parts{source, nvrtc.version(), architecture, kIntegers};
+  parts.insert(parts.end(), std::begin(kOptions), std::end(kOptions));
+  for (const auto& [name, text] : round_headers()) parts.insert(parts.end(), {name, text});
   const std::string path =
-      (fs::path(directory) / fmt::format("rule-{}-{:016x}.cubin", architecture, hash.value())).string();
+      (fs::path(directory) / fmt::format("rule-{}-{:016x}.cubin", architecture, key_of_texts(parts)))
+          .string();
   if (fs::exists(path)) return path;
   const std::string code = nvrtc.compiled(source, round_headers(), architecture);
   try {

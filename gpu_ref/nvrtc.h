@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "gpu_ref/opened_library.h"
+
 namespace cuboct::gpu {
 
 // In words that end a sentence: why nothing was compiled.
@@ -22,9 +24,6 @@ class Nvrtc {
   // By names in their order; throws NvrtcError where none is there, or one lacks a function.
   explicit Nvrtc(const std::vector<std::string>& libraries = {
                      "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so", "/usr/local/cuda/lib64/libnvrtc.so"});
-  ~Nvrtc();
-  Nvrtc(const Nvrtc&) = delete;
-  Nvrtc& operator=(const Nvrtc&) = delete;
 
   std::string version() const;  // "13.0"
   // Machine code of `source`, which may include `headers` (name and text), for an architecture ("sm_90").
@@ -35,11 +34,9 @@ class Nvrtc {
 
  private:
   using Program = struct _nvrtcProgram*;
-  template <class Function>
-  void bind(Function& function, const char* name);
   void check(int answer, const char* what) const;
 
-  void* library_ = nullptr;
+  OpenedLibrary<NvrtcError> library_;
   struct Functions {
     int (*version)(int*, int*) = nullptr;
     const char* (*error)(int) = nullptr;

@@ -19,8 +19,6 @@ namespace cuboct::emu {
 // How a rule of text runs its pairs: interpreted, compiled by the host's compiler before the first step, or
 // (automatic) compiled once the run has lasted. No bit depends on it.
 enum class RuleCode { automatic, interpreted, compiled };
-// By its name; InputError for another.
-RuleCode rule_code_of(const std::string& name);
 
 struct LatticeOptions {
   int threads = 0;         // 0: one per core that the process may use, fewer for small scenes

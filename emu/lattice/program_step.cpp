@@ -24,13 +24,6 @@ void LatticeEngine::Impl::keep_fields() {
     });
 }
 
-RuleCode rule_code_of(const std::string& name) {
-  if (name == "automatic") return RuleCode::automatic;
-  if (name == "interpreted") return RuleCode::interpreted;
-  if (name == "compiled") return RuleCode::compiled;
-  throw InputError("'" + name + "' is no way to run a rule of text", "automatic, interpreted or compiled");
-}
-
 void LatticeEngine::Impl::compile_rounds() {
   const std::string directory = options_.code_directory.empty() ? cache_directory() : options_.code_directory;
   if (directory.empty())

@@ -10,6 +10,7 @@
 #include <cstdlib>
 
 #include "model/base/error.h"
+#include "model/base/hash.h"
 #include "model/base/text.h"
 
 namespace cuboct {
@@ -34,6 +35,15 @@ std::string version_of(const std::string& tool, const std::string& package, cons
   if (WIFEXITED(status) && WEXITSTATUS(status) == kNotFound)
     throw InputError(fmt::format("{} is missing: {} (Debian package {})", tool, why, package));
   throw InputError(fmt::format("'{} --version' fails: the tool does not work", tool));
+}
+
+uint64_t key_of_texts(const std::vector<std::string>& texts) {
+  Hash hash;
+  for (const std::string& text : texts) {
+    hash.add(static_cast<int64_t>(text.size()));
+    for (const char c : text) hash.add(c);
+  }
+  return hash.value();
 }
 
 void run_logged(const std::string& what, const std::string& command, const fs::path& directory,

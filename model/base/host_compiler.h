@@ -2,8 +2,10 @@
 // Code that this program makes, compiled on the machine that runs it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace cuboct {
 
@@ -14,6 +16,9 @@ std::string host_compiler();
 // What a tool (words of a shell) says of itself. Throws InputError where it does not work; where it is
 // missing the error names `package`, and `why` it is needed.
 std::string version_of(const std::string& tool, const std::string& package, const std::string& why);
+
+// Of texts in their order: names what is made of them alone.
+uint64_t key_of_texts(const std::vector<std::string>& texts);
 
 // Runs `command`, a line of a shell, in `directory`; what it says is appended to `log`. Throws InputError
 // ("WHAT failed: see LOG").

@@ -7,7 +7,6 @@
 #include "emu/lattice/code/sources.h"
 #include "emu/lattice/kernel_rule.h"
 #include "model/base/error.h"
-#include "model/base/hash.h"
 #include "model/base/host_compiler.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
@@ -36,14 +35,9 @@ std::string flags_of(const std::string& simd) {
 }
 
 uint64_t key_of(const std::string& text, const std::string& tools) {
-  Hash hash;
-  const auto add = [&](const std::string& of) {
-    for (const char c : of) hash.add(c);
-    hash.add(0);
-  };
-  add(text), add(tools);
-  for (const auto& [name, source] : code_sources()) add(name), add(source);
-  return hash.value();
+  std::vector<std::string> parts{text, tools};
+  for (const auto& [name, source] : code_sources()) parts.insert(parts.end(), {name, source});
+  return key_of_texts(parts);
 }
 
 std::string compile(const std::string& text, const std::string& simd, const std::string& directory) {

@@ -5,7 +5,6 @@
 // takes it with its sign.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "emu/lattice/kernel.h"
