@@ -129,8 +129,9 @@ RealLaw<Real> RealTables<Real>::take_law(const PairLaw& law) {
                                    p.r2 / length * b * b};
     });
   } else {
-    throw InputError("the pair law has no closed form, which the real-number GPU engine needs")
-        .about({"law.kind"});
+    throw InputError("the pair law has no closed form, which floats and doubles on a GPU need",
+                     "precision fixed runs it; so do floats where the force is one table's value at r")
+        .about({"law.kind", "rule"});
   }
   return terms;
 }

@@ -10,6 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/contract/law_energies.h"
+#include "model/contract/law_function.h"
 
 namespace cuboct {
 namespace {
@@ -96,108 +97,70 @@ class LennardJones final : public CoredLaw {
   double end_energy_ = 0, end_force_ = 0;  // taken off: J; N, 0 where the force may jump
 };
 
-// Index k of the piece [at[k], at[k+1]) that holds r; the end pieces take what lies outside.
-size_t piece_of(const std::vector<double>& at, double r) {
-  const auto inner = std::upper_bound(at.begin() + 1, at.end() - 1, r);
-  return static_cast<size_t>(inner - at.begin()) - 1;
-}
-
 // Cubic pieces by their values and slopes at the points.
 class HermiteLaw final : public CoredLaw {
  public:
-  HermiteLaw(const char* name, std::vector<double> r, std::vector<double> f, std::vector<double> m,
-             double core)
-      : CoredLaw(name, core, r.back()),
-        r_(std::move(r)),
-        f_(std::move(f)),
-        m_(std::move(m)),
-        energy_(r_.size()) {
-    for (size_t k = r_.size() - 1; k-- > 0;) energy_[k] = energy_[k + 1] + rest_of_piece(k, 0);
+  HermiteLaw(const char* name, Hermite force, double core)
+      : CoredLaw(name, core, force.end()), force_(std::move(force)), energies_(force_.energies()) {
     set_core();
-    for (size_t k = 0; k + 1 < r_.size(); ++k) {
-      const Piece p = piece(k);
-      const std::array<double, 4> c{p.c0, p.c1 / 2, p.c2 / 3, p.c3 / 4};
-      const std::array<double, CubicEnergy::terms> terms{r_[k], p.h,  energy_[k + 1], integral(p, 1),
-                                                         c[0],  c[1], c[2],           c[3]};
-      for (size_t of = 0; of < terms.size(); ++of) energies_.term[of].push_back(terms[of]);
-    }
   }
-  LawForm form() const override {
-    std::vector<CubicPiece> pieces;
-    for (size_t k = 0; k + 1 < r_.size(); ++k) {
-      const Piece p = piece(k);
-      pieces.push_back({r_[k], p.c0, p.c1 / p.h, p.c2 / (p.h * p.h), p.c3 / (p.h * p.h * p.h)});
-    }
-    return pieces;
-  }
+  LawForm form() const override { return force_.pieces(); }
   const CubicEnergy& energies() const { return energies_; }
 
  private:
-  // On piece k with s = (r - r[k])/h:  f = f0 + h m0 s + c2 s^2 + c3 s^3.
-  struct Piece {
-    double h, c0, c1, c2, c3;
-  };
-  Piece piece(size_t k) const {
-    const double h = r_[k + 1] - r_[k], rise = f_[k + 1] - f_[k];
-    return {h, f_[k], h * m_[k], 3 * rise - h * (2 * m_[k] + m_[k + 1]), h * (m_[k] + m_[k + 1]) - 2 * rise};
-  }
-  // Of the force over a piece up to s, in widths.
-  static double integral(const Piece& p, double s) {
-    return s * (p.c0 + s * (p.c1 / 2 + s * (p.c2 / 3 + s * (p.c3 / 4))));
-  }
-  // Integral of the force from s to the end of piece k.
-  double rest_of_piece(size_t k, double s) const {
-    const Piece p = piece(k);
-    return p.h * (integral(p, 1) - integral(p, s));
-  }
-  double outer_force(double r) const override {
-    const size_t k = piece_of(r_, r);
-    const Piece p = piece(k);
-    const double s = (r - r_[k]) / p.h;
-    return p.c0 + s * (p.c1 + s * (p.c2 + s * p.c3));
-  }
-  double outer_slope(double r) const override {
-    const size_t k = piece_of(r_, r);
-    const Piece p = piece(k);
-    const double s = (r - r_[k]) / p.h;
-    return (p.c1 + s * (2 * p.c2 + s * 3 * p.c3)) / p.h;
-  }
-  double outer_energy(double r) const override {
-    const size_t k = piece_of(r_, r);
-    return energy_[k + 1] + rest_of_piece(k, (r - r_[k]) / (r_[k + 1] - r_[k]));
-  }
+  double outer_force(double r) const override { return force_.at(r); }
+  double outer_slope(double r) const override { return force_.slope(r); }
+  double outer_energy(double r) const override { return force_.integral_from(r); }
 
-  std::vector<double> r_, f_, m_;
-  std::vector<double> energy_;  // at the points
+  Hermite force_;
   CubicEnergy energies_;
 };
 
-// The slope at an end by the parabola through three points, limited so that the end piece stays monotone (the
-// rule of PCHIM): h0, d0 of the end piece, h1, d1 of the next.
-double end_slope(double h0, double d0, double h1, double d1) {
-  const double m = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-  if (m * d0 <= 0) return 0;
-  if (d0 * d1 < 0 && std::abs(m) > 3 * std::abs(d0)) return 3 * d0;
-  return m;
-}
+class FunctionLaw final : public CoredLaw {
+ public:
+  FunctionLaw(std::shared_ptr<const LawFunction> of, double cutoff, double core)
+      : CoredLaw("function_law", core, cutoff), of_(std::move(of)), step_((cutoff - core) / kKnots) {
+    for (int k = 0; k <= kKnots; ++k) {
+      const double r = knot(k), f = of_->force(r);
+      if (!std::isfinite(f))
+        throw InputError(fmt::format("the force is no number at r = {:.6g} m", r),
+                         "between 'core' and 'reach' it must be one everywhere");
+      force_[static_cast<size_t>(k)] = f;
+    }
+    for (int k = kKnots; k-- > 0;)
+      after_[static_cast<size_t>(k)] = after_[static_cast<size_t>(k) + 1] + integral(knot(k), knot(k + 1));
+    set_core();
+  }
+  void forces(std::span<const double> r, std::span<double> f) const { of_->forces(r, f); }
 
-std::vector<double> monotone_slopes(const std::vector<double>& r, const std::vector<double>& f) {
-  const size_t n = r.size();
-  std::vector<double> h(n - 1), d(n - 1), m(n);
-  for (size_t k = 0; k + 1 < n; ++k) {
-    h[k] = r[k + 1] - r[k];
-    d[k] = (f[k + 1] - f[k]) / h[k];
+ private:
+  static constexpr int kKnots = 8192;
+  double knot(int k) const { return k == kKnots ? cutoff() : core() + k * step_; }
+  double integral(double from, double to) const {
+    const double near = std::sqrt(5 - 2 * std::sqrt(10.0 / 7)) / 3,
+                 far = std::sqrt(5 + 2 * std::sqrt(10.0 / 7)) / 3;
+    const double near_weight = (322 + 13 * std::sqrt(70.0)) / 900,
+                 far_weight = (322 - 13 * std::sqrt(70.0)) / 900;
+    const double half = (to - from) / 2, middle = from + half;
+    const std::array<double, 5> r{middle, middle - near * half, middle + near * half, middle - far * half,
+                                  middle + far * half};
+    std::array<double, 5> f{};
+    of_->forces(r, f);
+    return half * (128.0 / 225 * f[0] + near_weight * (f[1] + f[2]) + far_weight * (f[3] + f[4]));
   }
-  if (n == 2) return {d[0], d[0]};
-  m[0] = end_slope(h[0], d[0], h[1], d[1]);
-  m[n - 1] = end_slope(h[n - 2], d[n - 2], h[n - 3], d[n - 3]);
-  for (size_t k = 1; k + 1 < n; ++k) {
-    // A weighted harmonic mean of the two chords; 0 at an extremum.
-    const double w0 = 2 * h[k] + h[k - 1], w1 = h[k] + 2 * h[k - 1];
-    m[k] = d[k - 1] * d[k] > 0 ? (w0 + w1) / (w0 / d[k - 1] + w1 / d[k]) : 0;
+  double outer_force(double r) const override { return of_->force(r); }
+  double outer_slope(double r) const override { return of_->slope(r); }
+  double outer_energy(double r) const override {
+    const auto k = static_cast<size_t>(std::min((r - core()) / step_, kKnots - 1.0));
+    const double s = (r - core()) / step_ - static_cast<double>(k), rise = after_[k + 1] - after_[k];
+    const double m0 = -step_ * force_[k], m1 = -step_ * force_[k + 1];
+    return after_[k] + s * (m0 + s * (3 * rise - 2 * m0 - m1 + s * (m0 + m1 - 2 * rise)));
   }
-  return m;
-}
+
+  std::shared_ptr<const LawFunction> of_;
+  double step_;                                       // m
+  std::array<double, kKnots + 1> force_{}, after_{};  // at the knots; J, from a knot to the cutoff
+};
 
 // A clamped uniform quadratic B-spline as a chain of Bezier arcs: with equal knot intervals its joints are
 // the middles of the inner legs of the control polygon, and the control points between them are the arcs'
@@ -331,7 +294,7 @@ std::shared_ptr<const PairLaw> spline_law(std::vector<double> r, std::vector<dou
   }
   if (interpolation == Interpolation::b_spline) return std::make_shared<BSplineLaw>(r, f, core);
   std::vector<double> slopes = monotone_slopes(r, f);
-  return std::make_shared<HermiteLaw>("spline_law", std::move(r), std::move(f), std::move(slopes), core);
+  return hermite_law("spline_law", {std::move(r), std::move(f), std::move(slopes)}, core);
 }
 
 std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch, double stiffness,
@@ -352,10 +315,25 @@ std::shared_ptr<const PairLaw> preset_law(const std::string& name, double pitch,
     f.push_back(0);
     m.push_back(0);
     const double core = r.front();
-    return std::make_shared<HermiteLaw>("preset_law", std::move(r), std::move(f), std::move(m), core);
+    return hermite_law("preset_law", {std::move(r), std::move(f), std::move(m)}, core);
   }
   throw InputError(fmt::format("unknown preset law '{}'", name),
                    "the presets are elastic, brittle, ductile and viscous");
+}
+
+std::shared_ptr<const PairLaw> hermite_law(const char* name, Hermite force, double core) {
+  return std::make_shared<HermiteLaw>(name, std::move(force), core);
+}
+
+std::shared_ptr<const PairLaw> function_law(std::shared_ptr<const LawFunction> of, double cutoff,
+                                            double core) {
+  return std::make_shared<FunctionLaw>(std::move(of), cutoff, core);
+}
+
+bool forces_of(const PairLaw& law, std::span<const double> r, std::span<double> f) {
+  const auto* function = dynamic_cast<const FunctionLaw*>(&law);
+  if (function != nullptr) function->forces(r, f);
+  return function != nullptr;
 }
 
 void energies_of(const PairLaw& law, std::span<const double> r, std::span<double> energy) {

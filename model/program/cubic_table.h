@@ -12,31 +12,30 @@
 #include <utility>
 #include <vector>
 
+#include "model/program/table_curve.h"
+
 namespace cuboct {
 
-class CubicTable {
+class CubicTable final : public TableCurve {
  public:
   static constexpr size_t kLeastValues = 5;
 
   // `what`: of which function, for people. `bounded`: an argument beyond the end is an error of who asks.
   CubicTable(std::string what, double step, const std::vector<double>& values, bool bounded);
 
-  double at(double x) const {
+  double at(double x) const override {
     const auto [c, p] = place(x);
     return ((c[3] * p + c[2]) * p + c[1]) * p + c[0];
   }
-  double slope(double x) const {
+  double slope(double x) const override {
     const auto [c, p] = place(x);
     return ((3 * c[3] * p + 2 * c[2]) * p + c[1]) * per_step_;
   }
-  double end() const { return step_ * static_cast<double>(bins()); }
+  double end() const override { return step_ * static_cast<double>(bins()); }
   double step() const { return step_; }
-  const std::string& what() const { return what_; }
-  // Whether an argument is one that no one should ask for; also where it is not a number.
-  bool beyond(double x) const { return bounded_ && !(x <= end()); }
-  bool bounded() const { return bounded_; }
-  // The least and the largest value, or slope, over the table.
-  std::pair<double, double> range(bool of_slope) const;
+  const std::string& what() const override { return what_; }
+  bool bounded() const override { return bounded_; }
+  std::pair<double, double> range(bool of_slope) const override;
 
  private:
   struct Place {

@@ -53,6 +53,11 @@ Dimension combined(const Dimension& a, const Dimension& b, int sign) {
 
 }  // namespace
 
+bool is_function(const std::string& name) {
+  return name == "slope" ||
+         std::ranges::any_of(kFunctions, [&](const Function& f) { return name == f.name; });
+}
+
 class Compiler {
  public:
   explicit Compiler(Scope& scope) : scope_(scope), graph_(scope.graph_) {}

@@ -39,6 +39,9 @@ struct TableFunction {
 inline constexpr uint32_t kNoiseStreams = 4;
 inline constexpr uint32_t kMostSeed = (uint32_t{1} << 30) - 1;
 
+// Whether every formula has a function of this name.
+bool is_function(const std::string& name);
+
 // The names that a formula may use. A name's nodes are made when it is first used.
 class Scope {
  public:

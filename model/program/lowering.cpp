@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "model/program/lowering.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -209,6 +211,8 @@ Scaled Lowering::tabled(const RealNode& node, const Scaled& a) {
   const auto f = [&](double x) { return applied(node, x, 0, 0); };
   if (a.constant()) return Scaled::of(f(a.number));
   const double end = node.table->end();
+  if (node.table->begin() < 0 || !(end > 0))
+    refuse_rule(fmt::format("the table '{}' begins below 0", node.table->what()));
   const Scaled x = integers_.chosen(true, integers_.chosen(false, a, Scaled::of(0)), Scaled::of(end));
   Scaled value = integers_.function(x, f, std::ldexp(end, -14), end, 0);
   const Scaled beyond = integers_.below(Scaled::of(end), a, false);

@@ -217,7 +217,7 @@ class ProgramTerms final : public RoundsTerms {
   // What is asked of a table beyond its end: of the first particle of those that do, whoever finds it.
   struct Beyond {
     size_t particle;
-    const CubicTable* table;
+    const TableCurve* table;
     double at;
     std::string told() const {
       return fmt::format("particle {}: the {} is asked for at {:.6g}, and its table ends at {:.6g}", particle,

@@ -34,15 +34,10 @@ void RealBlock::reserve(size_t count) {
     if (graph_.at(id).op == RealOp::constant) std::fill_n(lanes_of(id), lanes_, graph_.at(id).value);
 }
 
-void RealBlock::apply(NodeId id, size_t count) {
-  const RealNode& node = graph_.at(id);
-  double* to = lanes_of(id);
-  if (is_curve(node.op)) {
-    const double* argument = of(node.of[0]);
-    for (size_t k = 0; k < count; ++k) to[k] = applied(node, argument[k], 0, 0);
-    return;
-  }
-  kLoops[static_cast<size_t>(node.op)](count, to, of(node.of[0]), of(node.of[1]), of(node.of[2]));
+void apply(const RealNode& node, size_t count, double* to, const double* a, const double* b,
+           const double* c) {
+  if (!is_curve(node.op)) return kLoops[static_cast<size_t>(node.op)](count, to, a, b, c);
+  for (size_t k = 0; k < count; ++k) to[k] = applied(node, a[k], 0, 0);
 }
 
 }  // namespace cuboct

@@ -9,6 +9,9 @@
 
 namespace cuboct {
 
+// An operation on `count` lanes.
+void apply(const RealNode& node, size_t count, double* to, const double* a, const double* b, const double* c);
+
 class RealBlock {
  public:
   // Keeps a reference to the graph.
@@ -23,7 +26,7 @@ class RealBlock {
       if (node.op == RealOp::input)
         fill(node.input, lanes_of(id));
       else if (node.op != RealOp::constant)
-        apply(id, count);
+        apply(node, count, lanes_of(id), of(node.of[0]), of(node.of[1]), of(node.of[2]));
     }
   }
   const double* of(NodeId id) const { return values_.data() + id * lanes_; }
@@ -31,7 +34,6 @@ class RealBlock {
  private:
   double* lanes_of(NodeId id) { return values_.data() + id * lanes_; }
   void reserve(size_t count);
-  void apply(NodeId id, size_t count);
 
   const RealGraph& graph_;
   size_t lanes_ = 0;

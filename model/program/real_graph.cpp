@@ -76,7 +76,7 @@ NodeId RealGraph::add(RealOp op, NodeId a, NodeId b, NodeId c) {
   return keep({op, of, 0, {}, nullptr});
 }
 
-NodeId RealGraph::curve(const CubicTable& table, NodeId a, bool of_slope) {
+NodeId RealGraph::curve(const TableCurve& table, NodeId a, bool of_slope) {
   const RealNode node{of_slope ? RealOp::curve_slope : RealOp::curve, {a, 0, 0}, 0, {}, &table};
   const RealNode& of = nodes_[a];
   return of.op == RealOp::constant ? constant(applied(node, of.value, 0, 0)) : keep(node);

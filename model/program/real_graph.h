@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "model/program/cubic_table.h"
+#include "model/program/table_curve.h"
 
 namespace cuboct {
 
@@ -78,7 +78,7 @@ struct RealNode {
   std::array<NodeId, 3> of{};
   double value = 0;                   // of a constant
   RealInput input{};                  // of an input
-  const CubicTable* table = nullptr;  // of a curve
+  const TableCurve* table = nullptr;  // of a curve
 };
 
 // How many nodes an operation takes.
@@ -149,7 +149,7 @@ class RealGraph {
   NodeId input(RealSource source, uint32_t index = 0);
   NodeId add(RealOp op, NodeId a, NodeId b = 0, NodeId c = 0);
   // The table, or its slope, at a. It must outlive the graph.
-  NodeId curve(const CubicTable& table, NodeId a, bool of_slope);
+  NodeId curve(const TableCurve& table, NodeId a, bool of_slope);
 
   const std::vector<RealNode>& nodes() const { return nodes_; }
   const RealNode& at(NodeId id) const { return nodes_[id]; }
@@ -161,7 +161,7 @@ class RealGraph {
   NodeId whole_power(NodeId a, int exponent);
 
   std::vector<RealNode> nodes_;
-  std::map<std::tuple<RealOp, std::array<NodeId, 3>, uint64_t, RealInput, const CubicTable*>, NodeId> known_;
+  std::map<std::tuple<RealOp, std::array<NodeId, 3>, uint64_t, RealInput, const TableCurve*>, NodeId> known_;
 };
 
 // A node as a sum: of a - (b - c) these are a, -b and c. A sum of very many is one part, itself.

@@ -44,6 +44,9 @@ class Understanding {
     std::set<std::string> names(std::begin(kReserved), std::end(kReserved));
     for (const auto& [name, parameter] : text_.parameters) names.insert(name);
     for (const auto& [name, let] : text_.lets) names.insert(name);
+    for (const RuleText::Table& table : text_.tables)
+      if (!names.insert(table.name).second || is_function(table.name))
+        table.fail(fmt::format("the name '{}' is taken", table.name), {});
     const auto add = [&](const std::vector<RuleText::Field>& from, std::vector<ProgramField>& to,
                          uint32_t& numbers) {
       for (const RuleText::Field& field : from) {
@@ -76,7 +79,15 @@ class Understanding {
     }
     if (program_.reach > 0) scope.define_constant("reach", program_.reach, quantity::length.dimension);
     scope.define_lets(text_.lets);
+    for (size_t k = 0; k < program_.tables.size(); ++k) define_table(scope, k);
     if (text_.potential) define_potential(scope);
+  }
+  void define_table(Scope& scope, size_t k) const {
+    scope.define_function(text_.tables[k].name,
+                          {table_of_[k].first, table_of_[k].second,
+                           [&scope, &table = *program_.tables[k]](NodeId at, bool slope) {
+                             return scope.graph().curve(table, at, slope);
+                           }});
   }
   // Where there is one element, its functions mean the same everywhere.
   void define_potential(Scope& scope) const {
@@ -172,7 +183,55 @@ class Understanding {
   void constants() {
     program_.reach = constant(text_.reach, "'reach'", quantity::length.dimension);
     check_reach();
+    program_.core = constant(text_.core, "'core'", quantity::length.dimension);
+    for (const RuleText::Table& table : text_.tables) add_table(table);
     program_.stiffness = constant(text_.stiffness, "'stiffness'", quantity::stiffness.dimension);
+  }
+
+  // A table's numbers, and of what they are: a zero may be of anything.
+  std::pair<std::vector<double>, Dimension> column(const std::vector<Formula>& formulas) const {
+    std::vector<double> numbers;
+    std::optional<Dimension> dimension;
+    for (const Formula& formula : formulas) {
+      RealGraph graph;
+      Scope scope(graph, text_.units);
+      define_constants(scope);
+      const Value value = scope.value_of(formula);
+      if (value.kind != Kind::number) formula.fail({0, "a table holds numbers", {}});
+      const RealNode& node = graph.at(value.node[0]);
+      if (node.op != RealOp::constant || !std::isfinite(node.value))
+        formula.fail({0, "a table holds finite constants", {}});
+      numbers.push_back(node.value);
+      if (node.value == 0 && value.dimension == Dimension{}) continue;
+      if (dimension && text_.units && *dimension != value.dimension)
+        formula.fail({0,
+                      fmt::format("this is {}, and what stands before it {}", describe(value.dimension),
+                                  describe(*dimension)),
+                      {}});
+      dimension = value.dimension;
+    }
+    return {numbers, dimension.value_or(Dimension{})};
+  }
+  void add_table(const RuleText::Table& table) {
+    auto [at, argument] = column(table.at);
+    auto [values, dimension] = column(table.value);
+    for (size_t k = 1; k < at.size(); ++k)
+      if (!(at[k] > at[k - 1]))
+        table.at[k].fail({0, fmt::format("'at' must ascend, but point {} does not", k + 1), {}});
+    std::vector<double> slopes = monotone_slopes(at, values);
+    if (!table.slope.empty()) {
+      auto [given, of] = column(table.slope);
+      Dimension wanted = dimension;
+      for (size_t k = 0; k < wanted.exponent.size(); ++k) wanted.exponent[k] -= argument.exponent[k];
+      const bool zeros = std::ranges::all_of(given, [](double slope) { return slope == 0; });
+      if (text_.units && !zeros && of != wanted)
+        table.slope[0].fail(
+            {0, fmt::format("a slope must be {}, not {}", describe(wanted), describe(of)), {}});
+      slopes = given;
+    }
+    table_of_.emplace_back(argument, dimension);
+    program_.tables.push_back(
+        std::make_shared<const PointTable>(table.name, Hermite(at, std::move(values), std::move(slopes))));
   }
 
   void define_field(Scope& scope, const std::string& name, Source source, const ProgramField& field,
@@ -467,7 +526,8 @@ class Understanding {
   const RuleText& text_;
   ProgramPlace place_;
   RuleProgram program_;
-  std::set<std::string> names_;  // of sums
+  std::set<std::string> names_;                            // of sums
+  std::vector<std::pair<Dimension, Dimension>> table_of_;  // argument and value
 };
 
 }  // namespace

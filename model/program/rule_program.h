@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/program/point_table.h"
 #include "model/program/real_graph.h"
 #include "model/program/rule_text.h"
 #include "model/rules/declaration.h"
@@ -46,6 +47,7 @@ struct ProgramRound {
 struct RuleProgram {
   RuleDeclaration declaration;
   double reach = 0;      // m
+  double core = 0;       // m; 0: the rule is no pair law
   double stiffness = 0;  // N/m; 0: unknown
   bool still = false;
   std::vector<ProgramField> particle, bond;
@@ -57,7 +59,8 @@ struct RuleProgram {
   RealGraph pair_energy, particle_energy, broken;
   std::optional<NodeId> pair_energy_at, particle_energy_at, broken_at;
   std::vector<DeclarationLine> settings;
-  std::shared_ptr<const EmbeddedAtoms> potential;  // whose tables the graphs refer to; may be null
+  std::shared_ptr<const EmbeddedAtoms> potential;         // whose tables the graphs refer to; may be null
+  std::vector<std::shared_ptr<const PointTable>> tables;  // the rule's own, the same
   // Of noise the first step is this one: those before it belong to the runs that this one goes on from.
   uint64_t first_step = 0;
   // By type of particles 2^k of the k-th element of the potential; empty: all are the first.

@@ -48,7 +48,15 @@ uint64_t hash_of(const RuleText& text) {
   hash.add(text.still ? 1.0 : 0.0);
   for (const auto& [name, p] : text.parameters) hash.add(name), hash.add(p.value);
   for (const auto& [name, let] : text.lets) hash.add(name), hash.add(let.text);
+  for (const RuleText::Table& table : text.tables) {
+    hash.add(table.name);
+    for (const auto* column : {&table.at, &table.value, &table.slope}) {
+      hash.add(static_cast<double>(column->size()));
+      for (const Formula& formula : *column) hash.add(formula.text);
+    }
+  }
   hash.add(text.reach);
+  if (text.core) hash.add(text.core);
   hash.add(text.broken);
   hash.add(text.particle);
   hash.add(text.bond);

@@ -51,15 +51,24 @@ struct RuleText {
     std::function<void(const std::string& message, const std::string& hint)> fail;
   };
 
+  // A function of one number, by values.
+  struct Table {
+    std::string name;
+    std::vector<Formula> at, value, slope;  // of constants; no slope: those of monotone_slopes()
+    std::function<void(const std::string& message, const std::string& hint)> fail;
+  };
+
   std::string name;
   bool units = true;  // false: all quantities are plain numbers
   BondRange range = BondRange::current;
   bool still = false;  // no particle moves
   std::map<std::string, Parameter> parameters;
   std::optional<Formula> reach;  // m; always there
+  std::optional<Formula> core;   // m; there: the rule is a pair law
   std::optional<Formula> stiffness, pair_energy, particle_energy, broken;
   std::vector<Field> particle, bond;
   std::map<std::string, Formula> lets;
+  std::vector<Table> tables;
   std::vector<Round> setup, rounds;
   std::shared_ptr<const EmbeddedAtoms> potential;  // null: the rule has none
 };

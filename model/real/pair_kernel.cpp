@@ -7,6 +7,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "model/contract/law_function.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "model/real/pair_kernel.cpp"
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -171,9 +173,14 @@ struct Asked : Vectors<Real> {
   const PairLaw& law;
   HWY_INLINE explicit Asked(const LawTerms<Real>& terms) : law(*terms.law) {}
   HWY_INLINE V over_r(V r2) const {
-    Real at[hn::MaxLanes(D())];
+    constexpr size_t kLanes = hn::MaxLanes(D());
+    Real at[kLanes];
+    double r[kLanes], f[kLanes];
     hn::StoreU(hn::Sqrt(r2), D(), at);
-    for (Real& r : at) r = static_cast<Real>(law.force(static_cast<double>(r)) / static_cast<double>(r));
+    std::copy_n(at, kLanes, r);
+    if (!forces_of(law, r, f))
+      for (size_t k = 0; k < kLanes; ++k) f[k] = law.force(r[k]);
+    for (size_t k = 0; k < kLanes; ++k) at[k] = static_cast<Real>(f[k] / r[k]);
     return hn::LoadU(D(), at);
   }
 };

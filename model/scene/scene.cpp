@@ -302,8 +302,9 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   PackingChoice* packed = packing ? &*packing : nullptr;
   auto crystal = read_crystal(root);
   CrystalChoice* grown = crystal ? &*crystal : nullptr;
-  const std::optional<RuleChoice> rounds = read_rule(root, packed, grown);
-  scene.rule.law = rounds ? rounds_law(rounds->reach, nullptr) : read_law(root, packed);
+  const std::optional<RuleChoice> rule = read_rule(root, packed, grown);
+  const bool rounds = rule && !rule->law;
+  scene.rule.law = rounds ? rounds_law(rule->reach, nullptr) : rule ? rule->law : read_law(root, packed);
   if (packing) {
     scene.pitch = packing->fcc.pitch;
     scene.orientation = packing->fcc.orientation;
@@ -314,7 +315,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const Regions regions(root);
   read_body(root, stage, regions, packed, grown, scene);
   if (stage) stage->check_ramps();
-  if (rounds) scene.rule.law = rounds_law(rounds->reach, rounds->make(root, regions, scene));
+  if (rounds) scene.rule.law = rounds_law(rule->reach, rule->make(root, regions, scene));
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);

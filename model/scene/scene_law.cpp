@@ -61,7 +61,7 @@ GrainChoice read_grains(const ConfigTable& packing, const ConfigTable& table) {
 
 // The makers of laws know no file: their complaints get the place of the table.
 template <typename Make>
-auto placed(const ConfigTable& table, Make make) {
+auto placed(const ConfigValue& table, Make make) {
   try {
     return make();
   } catch (const InputError& error) {
@@ -144,7 +144,9 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
   return preset_law(name, pitch, stiffness, range_for(*energy, *whole, pitch));
 }
 
-void check_at_pitch(const ConfigTable& table, const PairLaw& law, double pitch, bool must_vanish) {
+}  // namespace
+
+void check_at_pitch(const ConfigValue& table, const PairLaw& law, double pitch, bool must_vanish) {
   if (law.cutoff() <= pitch)
     table.fail(
         fmt::format("the cutoff {:.6g} m of the law is not beyond the pitch {:.6g} m", law.cutoff(), pitch));
@@ -157,8 +159,6 @@ void check_at_pitch(const ConfigTable& table, const PairLaw& law, double pitch, 
     table.fail(fmt::format("the law does not vanish at the pitch: {:.6g} N at {:.6g} m", f, pitch),
                "the undeformed packing would not be at rest");
 }
-
-}  // namespace
 
 std::optional<PackingChoice> read_packing(const ConfigTable& root) {
   const auto table = root.table_at("packing");
@@ -192,7 +192,7 @@ std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* 
 
 std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingChoice* packing) {
   table.record_as("law");
-  const std::vector<std::string> kinds = {"elastic", "brittle", "ductile", "viscous", "spline", "lj"};
+  const std::vector<std::string> kinds = {"elastic", "brittle", "ductile", "viscous", "spline", "lj", "rule"};
   const std::string kind = kinds[table.at("kind").choice("law", kinds)];
   std::shared_ptr<const PairLaw> law;
   if (kind == "lj") {
@@ -201,13 +201,18 @@ std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingC
     const double guess = std::pow(2.0, 1.0 / 6) * table.number("sigma", quantity::length);
     if (packing != nullptr && packing->fcc.pitch == 0)
       packing->fcc.pitch = placed(table, [&] { return relaxed_pitch(*law, guess); });
+  } else if (kind == "rule") {
+    table.at("file");
+    law = read_program_rule(table, packing, [&] {
+            table.fail("a pair's law is a rule with 'core'", "without 'core' a rule is one of any force");
+          }).law;
   } else {
     if (packing != nullptr && packing->fcc.pitch == 0)
       table.fail(fmt::format("the law '{}' needs a given pitch, not \"relaxed\"", kind));
     law = kind == "spline" ? read_spline(table, packing) : read_preset(table, kind, packing);
   }
   table.done();
-  if (packing != nullptr) check_at_pitch(table, *law, packing->fcc.pitch, kind != "lj");
+  if (packing != nullptr) check_at_pitch(table, *law, packing->fcc.pitch, kind != "lj" && kind != "rule");
   return law;
 }
 

@@ -90,21 +90,26 @@ double stiffness_from_modulus(double modulus, const Vec3& direction, double pitc
 std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* packing);
 // A [law] table, or the `law` of a bond.
 std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingChoice* packing);
-// [rule], in the place of [law]: a rule of several rounds, which is made when the body is read.
+// That a packing of this pitch may have the law. `must_vanish`: it is to be at rest.
+void check_at_pitch(const ConfigValue& value, const PairLaw& law, double pitch, bool must_vanish);
+// [rule], in the place of [law]: a rule of several rounds, which is made when the body is read, or a pair
+// law.
 struct RuleChoice {
   double reach = 0;  // m
   // InputError where the scene has what the rule cannot do.
   std::function<std::shared_ptr<const RoundsRule>(const ConfigTable& root, const Regions&, const Scene&)>
       make;
+  std::shared_ptr<const PairLaw> law{};  // not null: the rule is a pair law, and makes nothing else
 };
-// Sets crystal->bond where it was "relaxed".
-std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice* packing,
-                                    CrystalChoice* crystal);
+// Sets crystal->bond where it was "relaxed", and packing->fcc.pitch for a pair law.
+std::optional<RuleChoice> read_rule(const ConfigTable& root, PackingChoice* packing, CrystalChoice* crystal);
 // Its kinds.
 RuleChoice read_lps_rule(const ConfigTable& table, const PackingChoice* packing);
 RuleChoice read_tersoff_rule(const ConfigTable& table, CrystalChoice* crystal);
-// A rule as text: the path of its file, or a table that has its parts.
-RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing);
+// A rule as text: the path of its file, or a table that has its parts. `no_law` fails where it may be none
+// but a pair law, and is not one.
+RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing,
+                             const std::function<void()>& no_law);
 // What no rule of rounds can do.
 void check_rounds_body(const ConfigTable& root, const Scene& scene);
 

@@ -8,6 +8,7 @@
 
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
+#include "model/program/formula_law.h"
 #include "model/program/program_rule.h"
 #include "model/scene/file_kind.h"
 #include "model/scene/scene_parts.h"
@@ -155,7 +156,52 @@ std::vector<RuleText::Round> rounds_in(const ConfigTable& table, const std::stri
   return rounds;
 }
 
+// A list of formulas, or of quantities in one string.
+std::vector<Formula> column_of(const ConfigValue& value) {
+  std::vector<Formula> column;
+  if (!value.is_string()) {
+    for (const ConfigValue& item : value.items()) column.push_back(formula_of(item));
+    return column;
+  }
+  const ParsedQuantity all = [&] {
+    try {
+      return parse_quantity(value.string());
+    } catch (const UnitError& error) {
+      value.fail(error.message, error.hint);
+    }
+  }();
+  for (const double number : all.values) {
+    Expression constant;
+    constant.value = number;
+    constant.dimension = all.dimension;
+    column.push_back({fmt::format("{}", number), constant,
+                      [value](const FormulaError& error) { value.fail(error.message, error.hint); }});
+  }
+  return column;
+}
+
+RuleText::Table table_of(const ConfigTable& table) {
+  RuleText::Table of{
+      table.key(), column_of(table.at("at")), column_of(table.at("value")), {}, failing(table)};
+  check_name(table);
+  if (const auto slope = table.find("slope")) of.slope = column_of(*slope);
+  if (of.at.size() < 2) table.at("at").fail("a table needs two points at least");
+  for (const char* key : {"value", "slope"}) {
+    const auto& column = key == std::string("value") ? of.value : of.slope;
+    if (table.has(key) && column.size() != of.at.size())
+      table.at(key).fail(fmt::format("'at' has {} points, '{}' has {}", of.at.size(), key, column.size()));
+  }
+  return of;
+}
+
 void read_values(const ConfigTable& table, RuleText& text) {
+  if (const auto tables = names_at(table, "table"))
+    for (const std::string& name : tables->names()) {
+      const ConfigTable one = tables->at(name).table();
+      one.record_as("rule");
+      text.tables.push_back(table_of(one));
+    }
+
   if (const auto parameters = names_at(table, "parameters"))
     for (const std::string& name : parameters->names()) {
       const ConfigValue value = parameters->at(name);
@@ -183,6 +229,7 @@ RuleText rule_text(const ConfigTable& table) {
         bonds->choice("bonds", {"current", "reference"}) == 0 ? BondRange::current : BondRange::reference;
   text.still = table.boolean_or("still", false);
   text.reach = formula_of(table.at("reach"));
+  text.core = formula_at(table, "core");
   text.stiffness = formula_at(table, "stiffness");
   text.broken = formula_at(table, "broken");
   read_values(table, text);
@@ -305,25 +352,32 @@ RuleText text_of_file(const ConfigValue& file, PotentialKeys& potential) {
   });
 }
 
-RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const PackingChoice* packing) {
+RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const PackingChoice* packing,
+                  const std::function<void()>& no_law) {
+  if (!text.core) no_law();
   const RuleProgram program = understood(text, {.pitch = packing != nullptr ? packing->fcc.pitch : 0});
-  return {program.reach, [program, potential](const ConfigTable& root, const Regions&, const Scene& scene) {
+  if (text.core)
+    return {program.reach, nullptr, formula_law(text, std::make_shared<const RuleProgram>(program))};
+  return {program.reach,
+          [program, potential](const ConfigTable& root, const Regions&, const Scene& scene) {
             check_rounds_body(root, scene);
             RuleProgram whole = program;
             whole.element = potential.codes(scene);
             if (!whole.element.empty())
               whole.settings.push_back({"elements", potential.told(), "by material"});
             return std::make_shared<const ProgramRule>(std::move(whole));
-          }};
+          },
+          nullptr};
 }
 
 }  // namespace
 
-RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing) {
+RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing,
+                             const std::function<void()>& no_law) {
   PotentialKeys potential;
   const auto with_tables = [&](RuleText text) {
     text.potential = potential.tables();
-    return chosen(text, potential, packing);
+    return chosen(text, potential, packing, no_law);
   };
   if (!rule.is_table()) {
     RuleText text = text_of_file(rule, potential);

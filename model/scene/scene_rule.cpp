@@ -2,7 +2,9 @@
 // [rule] of a scene: a rule of several rounds in the place of [law].
 #include <fmt/format.h>
 
+#include "model/contract/law.h"
 #include "model/scene/scene_parts.h"
+#include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {
 namespace {
@@ -14,7 +16,19 @@ void refuse_pairs(const ConfigTable& root) {
   if (const auto damping = root.find("damping"))
     damping->fail("damping by pairs serves the pair law alone",
                   "static = { } in [run] brings a body to rest without it");
-  if (root.has("bond")) root.at("bond").fail("[[bond]] serves the pair law alone");
+  if (root.has("bond"))
+    root.at("bond").fail("[[bond]] serves the pair law alone", "a rule of text with 'core' is one");
+}
+
+RuleChoice pair_law_or_rounds(const ConfigValue& value, RuleChoice choice, PackingChoice* packing) {
+  if (!choice.law || packing == nullptr) return choice;
+  if (packing->fcc.pitch == 0) {
+    const double guess = stiffest_rest_distance(*choice.law);
+    if (!(guess > 0)) value.fail("\"relaxed\" needs a force that pushes, and pulls further out");
+    packing->fcc.pitch = placed_at(value, [&] { return relaxed_pitch(*choice.law, guess); });
+  }
+  check_at_pitch(value, *choice.law, packing->fcc.pitch, false);
+  return choice;
 }
 
 }  // namespace
@@ -27,17 +41,18 @@ void check_rounds_body(const ConfigTable& root, const Scene& scene) {
     if (type.pd && !(type.kp > 0)) root.fail(fmt::format("constraint of '{}' needs 'kp'", type.name));
 }
 
-std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice* packing,
-                                    CrystalChoice* crystal) {
+std::optional<RuleChoice> read_rule(const ConfigTable& root, PackingChoice* packing, CrystalChoice* crystal) {
   const auto value = root.find("rule");
   if (!value) {
     if (crystal != nullptr) crystal->table.fail("a crystal of atoms needs [rule]", "kind = \"tersoff\"");
     return std::nullopt;
   }
   root.not_both("law", "rule");
-  refuse_pairs(root);
-  if (packing != nullptr && packing->fcc.pitch == 0)
-    value->fail("a rule of rounds needs a given pitch, not \"relaxed\"");
+  const auto no_law = [&] {
+    refuse_pairs(root);
+    if (packing != nullptr && packing->fcc.pitch == 0)
+      value->fail("a rule of rounds needs a given pitch, not \"relaxed\"");
+  };
   const std::optional<ConfigTable> table = value->is_table() ? root.table_at("rule") : std::nullopt;
   if (table) table->record_as("rule");
   if (!table || !table->has("kind")) {
@@ -45,8 +60,9 @@ std::optional<RuleChoice> read_rule(const ConfigTable& root, const PackingChoice
       crystal->table.fail("a crystal of atoms serves kind = \"tersoff\" alone",
                           "[packing] has the particles of other rules");
     if (table && !table->has("file") && !table->has("reach")) table->at("kind");
-    return read_program_rule(*value, packing);
+    return pair_law_or_rounds(*value, read_program_rule(*value, packing, no_law), packing);
   }
+  no_law();
   const ConfigValue kind = table->at("kind");
   if (kind.choice("rule", {"lps", "tersoff"}) == 0) {
     if (crystal != nullptr)
