@@ -54,11 +54,15 @@ RuleDeclaration declaration_of(const LpsMaterial& m) {
                  {"whole", 1, "1", "what is left of the bond, 1 to 0"}};
   rule.particle = {{"displacement", 3, "m", "from the place as packed"},
                    {"weighted_volume", 1, "m^5", "sum of weight times length squared, of the undamaged body"},
+                   {"dilatation", 1, "1", "growth of the volume about the particle"},
                    {"pressure", 1, "N/m^8", "dilatation over weighted volume, times 3K - 5G or its like"},
                    {kForceField, 3, "N", "on the particle"}};
   rule.ready = {"displacement", "weighted_volume"};
-  RuleRound dilatation{
-      "dilatation", {"displacement"}, {{"opening", 1, "m^5", "weighted bond lengthening"}}, {}, {"pressure"}};
+  RuleRound dilatation{"dilatation",
+                       {"displacement"},
+                       {{"opening", 1, "m^5", "weighted bond lengthening"}},
+                       {},
+                       {"dilatation", "pressure"}};
   RuleRound force{"force",
                   {"displacement", "weighted_volume", "pressure"},
                   {{"pull", 3, "N/m^3", "of bonds, a density"}},
@@ -69,6 +73,7 @@ RuleDeclaration declaration_of(const LpsMaterial& m) {
     rule.particle.push_back({"shape", 6, "1", "inverse of the second moment of the bonds that are left"});
     rule.particle.push_back({"missing", 3, "N/m^3", "force per dilatation of the bonds that are not there"});
     rule.ready.insert(rule.ready.end(), {"shape", "missing"});
+    if (m.breaks()) dilatation.made.insert(dilatation.made.end(), {"shape", "missing"});
   }
   rule.rounds = {std::move(dilatation), std::move(force)};
   rule.shown = {{"dilatation", 1, "1", "growth of the volume about the particle"}};

@@ -110,6 +110,26 @@ class TermsOfBody final : public LpsTerms {
   const std::vector<double>& dilatation() const override { return dilatation_; }
   bool breaks(uint64_t b) const override { return !most_.empty() && most_[b] != kNever; }
 
+  std::vector<Field> fields() override {
+    const auto numbers = [](auto& of) {
+      return std::span(reinterpret_cast<double*>(of.data()), of.size() * sizeof(of[0]) / sizeof(double));
+    };
+    std::vector<Field> all{{"displacement", numbers(u_)},
+                           {"weighted_volume", numbers(inverse_)},
+                           {"dilatation", numbers(dilatation_)},
+                           {"pressure", numbers(pressure_)},
+                           {kForceField, numbers(force_)}};
+    if (m_.corrected) {
+      all.push_back({"shape", numbers(shape_)});
+      all.push_back({"missing", numbers(missing_)});
+    }
+    if (m_.breaks()) {
+      all.push_back({"largest_stretch", numbers(most_), true});
+      all.push_back({"whole", numbers(left_), true});
+    }
+    return all;
+  }
+
   double damage(size_t i) const override {
     if (left_.empty()) return 0;
     double whole = 0, here = 0;

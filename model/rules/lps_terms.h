@@ -3,6 +3,8 @@
 #pragma once
 
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "model/rules/lps.h"
@@ -25,6 +27,14 @@ class LpsTerms : public RoundsTerms {
   // [particle]: 1/m^5, 1 over the weighted volume; 1, of the last rounds.
   virtual const std::vector<double>& inverse_weighted() const = 0;
   virtual const std::vector<double>& dilatation() const = 0;
+
+  // What the rounds read and write, by the names of the declaration.
+  struct Field {
+    std::string name;
+    std::span<double> numbers;  // [particle x numbers], or [bond]
+    bool of_bonds = false;
+  };
+  virtual std::vector<Field> fields() = 0;
 };
 
 // `whole`: weighted volume of a particle that lacks no bond. InputError, with the particle, where its bonds
