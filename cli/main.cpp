@@ -110,7 +110,8 @@ int main_of(const std::vector<std::string>& words, bool as_json) {
     check_words(app.text(), words);
     if (const auto asked = app.parse(words)) fmt::print("{}", *asked);
   } catch (const WrongWords& error) {
-    return plain(error.what(), 2);
+    // One line, whatever words it tells of.
+    return plain(as_json ? error.what() : line_text(error.what()), 2);
   } catch (const InputError& error) {
     return tell(error, as_json, 2);
   } catch (const Failed& failed) {

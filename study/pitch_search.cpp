@@ -253,10 +253,11 @@ PitchAnswer find_pitch(const PitchQuestion& question, const std::string& directo
     }
     if (most > question.most_particles) {
       if (pitch < packings.first()) return answer;
-      throw InputError(fmt::format("the scene's own pitch makes {} particles: more than the {} that are "
-                                   "allowed",
-                                   most, question.most_particles),
-                       fmt::format("--particles {}, or a larger pitch in the scene", most));
+      cases.front().scene.places.fail(
+          {"packing.pitch"},
+          fmt::format("the scene's own pitch makes {} particles: more than the {} that are allowed", most,
+                      question.most_particles),
+          fmt::format("--particles {}, or a larger pitch in the scene", most));
     }
     for (int shift = 0; shift < packings.shifts(); ++shift) {
       const auto was = std::ranges::find_if(

@@ -123,6 +123,7 @@ Reading Runner::read(const Asked& asked) {
   Reading reading;
   reading.step = step_count();
   const ParticleReader particles(plan_.rule, plan_.lattice, plan_.origin, asked);
+  particles.make_room(asked.ids.size(), reading);
   for (size_t k = 0; k < kicks.size(); ++k) particles.add(engine_->particle(asked.ids[k]), kicks[k], reading);
   largest_speed_ = std::max(largest_speed_, engine_->largest_speed());
   return reading;

@@ -18,7 +18,7 @@ std::optional<int> parse_command_line(Command& app, int argc, char** argv) {
     fmt::print("{}", *asked);
     return 0;
   } catch (const WrongWords& error) {
-    fmt::print(stderr, "{}\nRun with --help for more information.\n", block_text(error.what()));
+    fmt::print(stderr, "{}\nRun with --help for more information.\n", line_text(error.what()));
     return 2;
   }
 }

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numeric>
 
-#include "model/analysis/strain.h"
 #include "model/contract/neighbours.h"
 #include "model/rules/rounds_rule.h"
 
@@ -36,12 +35,15 @@ class Reach {
   explicit Reach(const Rule& rule) : types_(static_cast<int>(rule.types.size())) {
     for (int i = 0; i < types_; ++i)
       for (int j = 0; j < types_; ++j) squared_.push_back(std::pow(bond_reach(rule, i, j), 2));
+    least_ = *std::ranges::min_element(squared_);
   }
   double squared(int i, int j) const { return squared_[static_cast<size_t>(i * types_ + j)]; }
+  double least() const { return least_; }
 
  private:
   int types_;
   std::vector<double> squared_;
+  double least_;
 };
 
 }  // namespace
@@ -52,7 +54,7 @@ double bond_reach(const Rule& rule, int type_i, int type_j) {
 }
 
 CrackMeter::CrackMeter(const Probe& probe, const Periodic& periodic, const std::vector<Vec3>& initial)
-    : probe_(probe), periodic_(periodic) {
+    : probe_(probe), periodic_(periodic), repeats_(!periodic.extent.isZero(0)) {
   x_.reserve(probe.set.ids.size());
   for (const uint32_t id : probe.set.ids) x_.push_back(initial[id]);
   for (size_t at = 0; at < probe.begin.size(); ++at) {
@@ -64,14 +66,9 @@ CrackMeter::CrackMeter(const Probe& probe, const Periodic& periodic, const std::
   cells.for_each_pair(x_, [&](uint32_t i, uint32_t j, const Vec3&, double r) {
     if (r <= bond_reach(*probe_.rule, type(i), type(j))) bonds_.push_back({std::min(i, j), std::max(i, j)});
   });
+  std::sort(bonds_.begin(), bonds_.end());
 }
 
-Vec3 CrackMeter::initial(const Bond& bond) const {
-  const Vec3 d = x_[bond.j] - x_[bond.i];
-  return d.squaredNorm() < probe_.bond_length * probe_.bond_length ? d : nearest_image(d, periodic_);
-}
-
-// Ascending, so that no sum depends on how cells cut the space.
 std::vector<CrackMeter::Bond> CrackMeter::broken(const std::vector<Vec3>& moved) const {
   std::vector<Vec3> u;
   u.reserve(x_.size());
@@ -79,10 +76,10 @@ std::vector<CrackMeter::Bond> CrackMeter::broken(const std::vector<Vec3>& moved)
   for (size_t at = 0; at < ahead_.size(); ++at) u[at] -= ahead_[at];
   const Reach reach(*probe_.rule);
   std::vector<Bond> gone;
-  for (const Bond& bond : bonds_)
-    if ((initial(bond) + u[bond.j] - u[bond.i]).squaredNorm() > reach.squared(type(bond.i), type(bond.j)))
-      gone.push_back(bond);
-  std::sort(gone.begin(), gone.end());
+  for (const Bond& bond : bonds_) {
+    const double r2 = (initial(bond) + u[bond.j] - u[bond.i]).squaredNorm();
+    if (r2 > reach.least() && r2 > reach.squared(type(bond.i), type(bond.j))) gone.push_back(bond);
+  }
   return gone;
 }
 

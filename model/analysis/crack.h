@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "model/analysis/strain.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
@@ -35,15 +36,21 @@ class CrackMeter {
     auto operator<=>(const Bond&) const = default;
   };
   int type(uint32_t at) const { return probe_.types[at]; }
-  Vec3 initial(const Bond& bond) const;  // m, from i to j
+  Vec3 initial(const Bond& bond) const {  // m, from i to j
+    const Vec3 d = x_[bond.j] - x_[bond.i];
+    return !repeats_ || d.squaredNorm() < probe_.bond_length * probe_.bond_length
+               ? d
+               : nearest_image(d, periodic_);
+  }
   std::vector<Bond> broken(const std::vector<Vec3>& moved) const;
   double length(const std::vector<Bond>& broken) const;
 
   Probe probe_;
   Periodic periodic_;
+  bool repeats_;             // along some axis
   std::vector<Vec3> x_;      // m, of the set where its bonds are taken
   std::vector<Vec3> ahead_;  // m, from `initial` to there; empty: none
-  std::vector<Bond> bonds_;
+  std::vector<Bond> bonds_;  // ascending, so that no sum depends on how cells cut the space
 };
 
 }  // namespace cuboct

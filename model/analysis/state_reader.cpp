@@ -27,6 +27,11 @@ void ParticleReader::add(const Particle& particle, const Int3& kick, Reading& re
   if (velocities_) reading.v.push_back(velocity_of(fixed_, particle, kick, speed_));
 }
 
+void ParticleReader::make_room(size_t particles, Reading& reading) const {
+  reading.x.reserve(particles), reading.force.reserve(particles);
+  if (velocities_) reading.v.reserve(particles);
+}
+
 StateReader::StateReader(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                          int threads)
     : rule_(rule),
@@ -41,6 +46,7 @@ Reading StateReader::read(const State& state, const Asked& asked, std::vector<In
   reading.step = state.step;
   if (takes_kicks(asked) && kicks.empty()) kicks = summed_kicks(fixed_, lattice_, state, threads_);
   const ParticleReader particles(fixed_, lattice_, origin_, asked);
+  particles.make_room(asked.ids.size(), reading);
   for (const uint32_t id : asked.ids)
     particles.add(state.particles[id], kicks.empty() ? Int3{} : kicks[id], reading);
   if (!asked.energies) return reading;

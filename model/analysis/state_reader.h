@@ -28,6 +28,8 @@ class ParticleReader {
   ParticleReader(const FixedRule& fixed, const Lattice& lattice, const Vec3& origin, const Asked& asked);
   // `kick`: the sum of its pairs; zero where nobody asks.
   void add(const Particle& particle, const Int3& kick, Reading& reading) const;
+  // For so many.
+  void make_room(size_t particles, Reading& reading) const;
 
  private:
   const FixedRule& fixed_;

@@ -77,7 +77,7 @@ class CellBlocks {
 
 // The ways between neighbours fill the box around all that hangs together: of a rod that slants its length to
 // the third. So many cells are made of those that were asked for, and so many in any case.
-constexpr size_t kMostClosed = 64, kAlwaysClosed = 2'000'000;
+constexpr size_t kMostClosed = 8, kAlwaysClosed = 2'000'000;
 
 [[noreturn]] void refuse_closure(size_t asked, size_t most) {
   throw InputError(

@@ -141,7 +141,13 @@ ElementMesh read_box(const ConfigTable& table, int grain_cubes, int refine) {
                                          "xyz"[a], cubes[a]),
                              "the division into tetrahedra is mirrored in every second cube");
   for (int& count : cubes) count *= refine;
-  return box_mesh(cubes, extent, repeats, grain_cubes * refine);
+  ElementMesh mesh = box_mesh(cubes, extent, repeats, grain_cubes * refine);
+  try {
+    check_mesh(mesh, "the box");
+  } catch (const InputError& error) {
+    size.fail(error.what());
+  }
+  return mesh;
 }
 
 void read_mesh(ElementStudy& study, const ConfigTable& table, int grain_cubes, int refine) {

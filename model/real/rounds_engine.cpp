@@ -35,6 +35,7 @@ class RoundsEngine final : public RealEngine {
     recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
     refresh();
+    kick_.clear();
   }
 
   void step(uint64_t number) override {
@@ -51,6 +52,7 @@ class RoundsEngine final : public RealEngine {
       } else {
         move(dt / 2, dt);
         ++steps_;
+        kick_.clear();
         evaluate(true);
         move(dt / 2, 0);
         fresh_ = false;
@@ -104,6 +106,9 @@ class RoundsEngine final : public RealEngine {
   }
   void refresh() const {
     if (fresh_) return;
+    // Velocity Verlet kicks twice with the forces of the half step's velocities: a look at the full step's is
+    // not to come between.
+    if (options_.integrator == Integrator::velocity_verlet && kick_.empty()) kick_ = terms_->force();
     try {
       evaluate(false);
     } catch (const std::runtime_error& error) {
@@ -114,7 +119,7 @@ class RoundsEngine final : public RealEngine {
   // v += a * kick with imposed velocities; then u and x by v * drift.
   void move(double kick, double drift) {
     if (!rounds_.declaration().moves) return;
-    const std::vector<Vec3>& f = terms_->force();
+    const std::vector<Vec3>& f = kick_.empty() ? terms_->force() : kick_;
     for (size_t i = 0; i < x_.size(); ++i) {
       const ParticleType& type = rule_.types[type_[i]];
       Vec3 force = f[i];
@@ -135,8 +140,9 @@ class RoundsEngine final : public RealEngine {
   const RoundsRule& rounds_;  // of rule_
   const bool remembers_;
   std::unique_ptr<RoundsTerms> terms_;
-  uint64_t steps_;              // that led to x_
-  mutable bool fresh_ = false;  // the terms are those of x_
+  uint64_t steps_;                  // that led to x_
+  mutable bool fresh_ = false;      // the terms are those of x_
+  mutable std::vector<Vec3> kick_;  // N, of the last step's end, where a look has evaluated the rounds since
   double fastest_ = 0;
 };
 

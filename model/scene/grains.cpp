@@ -201,6 +201,12 @@ bool take_into(const Periodic& box, double tolerance, Vec3& x) {
   return true;
 }
 
+// No part of the surface is nearer to the middle than its distance; sites are met a half cell beyond.
+bool is_clear_of(const Shape& shape, const Bounds& bounds, double slack) {
+  const double half = (bounds.high - bounds.low).norm() / 2;
+  return shape.distance((bounds.low + bounds.high) / 2) > half + slack;
+}
+
 // Calls on(x) for the sites of the crystal within the bounds and a half cell around them, ascending in (l, k,
 // h).
 template <typename On>
@@ -311,10 +317,11 @@ std::vector<Vec3> pack_grains(const Fcc& fcc, const Grains& grains, const Shape*
   std::vector<std::vector<Vec3>> parts(images.size());
   for_each_range(images.size(), 2, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
-      const Image& image = images[k].first;
+      const auto& [image, bounds] = images[k];
+      if (shape != nullptr && is_clear_of(*shape, bounds, fcc.cell())) continue;
       const Fcc crystal{fcc.pitch, all[image.grain].turn * fcc.orientation,
                         voronoi.centre(image) + fcc.offset};
-      for_each_site(crystal, images[k].second, [&](Vec3 x) {
+      for_each_site(crystal, bounds, [&](Vec3 x) {
         if (!take_into(box, tolerance, x) || voronoi.owner(x) != image) return;
         if (shape == nullptr || shape->distance(x) <= tolerance) parts[k].push_back(x);
       });

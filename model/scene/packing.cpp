@@ -76,24 +76,32 @@ PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box
   const Bounds range = indices_in(fcc, bounds);
   PackingSize size;
   size.farthest = std::max(range.low.cwiseAbs().maxCoeff(), range.high.cwiseAbs().maxCoeff());
-  size.tested = 0.5;  // every other (h, k, l) is a site
-  for (int a = 0; a < 3; ++a) size.tested *= std::ceil(range.high[a]) - std::floor(range.low[a]) + 3;
+  Vec3 along_axes;
+  for (int a = 0; a < 3; ++a) along_axes[a] = std::ceil(range.high[a]) - std::floor(range.low[a]) + 3;
+  const double all = along_axes.prod() / 2;           // every other (h, k, l) is a site
+  const double rows = along_axes[1] * along_axes[2];  // a look at least at each
   // A site stands for pitch^3/sqrt(2). Along an axis both faces may hold a plane of sites.
   const Vec3 extent = bounds.high - bounds.low;
   size.sites = std::numbers::sqrt2 / std::pow(fcc.pitch, 3);
   for (int a = 0; a < 3; ++a) size.sites *= extent[a] + (box.extent[a] == 0 ? fcc.pitch / 2 : 0);
-  size.sites = std::min(size.sites, size.tested);
+  size.sites = std::min(size.sites, all);
+  size.tested = rows;
   if (shape == nullptr) return size;
   constexpr double kSamples = 32768, kMostWork = 3e7;
   const int along =
       static_cast<int>(std::cbrt(std::clamp(kMostWork / static_cast<double>(shape->parts()), 8.0, kSamples)));
   int inside = 0;
+  // Of a row's sites pack() passes over those that are nearer to one than its surface is.
+  double looked = 0;
   for (int l = 0; l < along; ++l)
     for (int k = 0; k < along; ++k)
       for (int h = 0; h < along; ++h) {
         const Vec3 x = bounds.low + (Vec3(h, k, l).array() + 0.5).matrix().cwiseProduct(extent) / along;
-        inside += shape->distance(x) <= kSiteTolerance * fcc.pitch ? 1 : 0;
+        const double distance = shape->distance(x);
+        inside += distance <= kSiteTolerance * fcc.pitch ? 1 : 0;
+        looked += std::min(1.0, fcc.cell() / std::abs(distance));
       }
+  size.tested += size.sites * looked / std::pow(along, 3);
   size.sites *= inside / std::pow(along, 3);
   return size;
 }
@@ -119,6 +127,12 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
       double clear = shape == nullptr ? std::numeric_limits<double>::infinity() : 0, passed = 0;
       // The first h of the row at which h + k + l is even.
       for (int64_t h = begin + ((begin + k + l) & 1); h <= end; h += 2) {
+        if (!held && passed < clear) {
+          const double over = std::ceil((clear - passed) / (2 * half));
+          if (over > static_cast<double>(end - h) / 2) break;
+          h += 2 * static_cast<int64_t>(over);
+          passed += 2 * half * over;
+        }
         const Vec3 hkl(static_cast<double>(h), static_cast<double>(k), static_cast<double>(l));
         Vec3 x = fcc.offset + fcc.orientation * (half * hkl);
         if (passed >= clear) {

@@ -33,7 +33,7 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box);
 // What packing would take, told before it starts.
 struct PackingSize {
   double farthest = 0;  // corner of the bounds from site 0, in half cells of the crystal
-  double tested = 0;    // sites, each held against the shape
+  double tested = 0;    // sites, each held against the shape, and rows of sites
   double sites =
       0;  // of them inside: a sample of the bounds tells, to a few percent in a body of many pitches
 };

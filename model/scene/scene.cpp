@@ -57,6 +57,11 @@ void read_damping(const ConfigTable& from, Scene& scene) {
   } else {
     scene.rule.damping.coefficient = table->number("coefficient", quantity::damping, Range::not_negative());
   }
+  // Limits of the time step square it; a million leaves room for a particle's neighbours.
+  const double rate = scene.rule.damping.coefficient / scene.rule.mass;
+  if (!std::isfinite(1e6 * rate * rate))
+    table->at(table->has("ratio") ? "ratio" : "coefficient")
+        .fail("the damping is larger than anything that can be computed with");
   table->done();
 }
 

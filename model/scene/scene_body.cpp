@@ -44,7 +44,7 @@ void check_size(const ConfigValue& geometry, const Bounds& bounds, double pitch)
 // `by_cells`: the box is so many cells of the crystal, whatever their size.
 void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, const Periodic& box,
                    bool by_cells) {
-  constexpr double kMostTests = 4e10;  // some minutes
+  constexpr double kMostTests = 4e9;  // half a minute
   const PackingSize size = packing_size(fcc, shape, box);
   if (size.farthest > 1e6) at.fail("the geometry is beyond a million pitches");
   const size_t parts = shape != nullptr ? shape->parts() : 1;
@@ -58,7 +58,7 @@ void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, co
     at.fail(fmt::format("{:.3g} sites of the packing, held against {} parts of the geometry: at most {:.3g} "
                         "tests are made",
                         size.tested, parts, kMostTests),
-            hint(tests / kMostTests) + (parts > 100 ? ", or fewer points" : ""));
+            hint(std::pow(tests / kMostTests, 1.5)) + (parts > 100 ? ", or fewer points" : ""));
   const double bytes = size.sites * kBytesToRead, free = static_cast<double>(free_memory());
   const double most = std::min(kMostParticles, free / kBytesToRead);
   if (size.sites > most)
@@ -72,7 +72,7 @@ void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, co
 void check_grains(const GrainChoice& choice, const GrainDomain& domain, double pitch) {
   constexpr double kLeastSize = 3;   // pitches: less has hardly an inner particle
   constexpr double kLeastThick = 3;  // pitches: less is a layer, of which a turned crystal leaves scraps
-  constexpr double kMostGrains = 1e7;
+  constexpr double kMostGrains = 1e6;  // half a minute
   const Grains& grains = choice.grains;
   const ConfigTable& table = choice.table;
   if (grains.size < kLeastSize * pitch * (1 - kPitchTolerance))

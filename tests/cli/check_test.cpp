@@ -92,7 +92,7 @@ TEST(Check, TellsPhysics) {
           "strain   about 10 %, by the velocity imposed on 'matter/pulled'\n"
           "work     17.5 million particle-steps, about [0-9.]+ s on [0-9]+ threads?, [0-9.]+ MB of memory\n"
           "probes   one every 50 steps, (about [0-9]+|less than 1) % of the processor time\n"
-          "energy   one every 100 steps, (about [0-9]+|less than 1) % of the processor time: one costs about "
+          "energy   one every 200 steps, (about [0-9]+|less than 1) % of the processor time: one costs about "
           "[0-9.]+ steps\n"
           "disk     [0-9.]+ MB with --out, 2 frames\n"
           "machine  [0-9]+ nodes; --machine tells formats, records and cycles\n")))

@@ -80,6 +80,8 @@ TEST(Command, RefusesWrongValues) {
                  "--steps: '-3' is not a whole number below 2^63\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--steps", "many"},
                  "--steps: 'many' is not a whole number below 2^63\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--steps", "a\nb"},
+                 "--steps: 'a\\nb' is not a whole number below 2^63\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--steps", "99999999999999999999"},
                  "--steps: '99999999999999999999' is not a whole number below 2^63\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "goldn"},

@@ -58,15 +58,15 @@ TEST_F(Log, ARowHoldsWhatTheCurvesHold) {
   std::filesystem::remove(bench_.path("bin/cuboct-systemc"));
   std::filesystem::copy(CUBOCT_SYSTEMC, bench_.path("bin/cuboct-systemc"));
 #endif
-  // The scene reads its probes every 50 steps and its energies every 100: rows are at those.
+  // The scene reads its probes every 50 steps and its energies every 200: rows are at those.
   // Some rows stand where probes alone were read.
   struct Case {
     std::string engine, steps;
     int rows, sampled, probed_alone;
   };
   for (const auto& [engine, steps, rows, sampled, probed_alone] :
-       {Case{"lattice", "2000", 21, 21, 0}, Case{"golden", "200", 21, 3, 2},
-        Case{"systemc", "130", 21, 3, 0}}) {
+       {Case{"lattice", "2000", 21, 11, 10}, Case{"golden", "200", 21, 2, 3},
+        Case{"systemc", "130", 21, 2, 0}}) {
     const Answer answer = run({"--engine", engine, "--steps", steps, "--out", bench_.path(engine), "--json"});
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_EQ(answer.out.front(), '{');

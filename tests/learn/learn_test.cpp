@@ -189,6 +189,24 @@ TEST_F(LearnCommand, RefusesARestThatLoadsDoNotDisturb) {
   EXPECT_FALSE(std::filesystem::exists(bench_.path("none")));
 }
 
+// The loads of a sheet that is thick are large: the waves along x pass, and one along y does not. What passed
+// is not left behind.
+TEST_F(LearnCommand, LeavesNoSamplesOfAStudyThatIsRefused) {
+  const std::string path = study("[kernel]\nhorizons = [3]\n");
+  std::string text = cuboct::test::contents(path);
+  text.replace(text.find("cells"), 5, "thickness = \"5.4 angstrom\"\ncells");
+  text.replace(text.find("waves = 1\n"), 10, "waves = 1\nstrain = 0.02\n");
+  std::ofstream(path) << text;
+  const auto answer = bench_.cuboct({"learn", path, "--out", bench_.path("none"), "--jobs", "1"});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_EQ(cuboct::test::without_excerpt(answer.err),
+            path +
+                ":10:10: wave y 0 1: a bond is strained by 2.24 %, more than 2 %\n  hint: a smaller "
+                "'strain'\n");
+  EXPECT_FALSE(std::filesystem::exists(bench_.path("none/samples.jsonl")));
+  EXPECT_FALSE(std::filesystem::exists(bench_.path("none")));
+}
+
 // A kept line that holds no field of the study's grid, or a sheet that did not move.
 TEST_F(LearnCommand, RefusesKeptSamplesOfAnotherGrid) {
   const std::string path = study("[kernel]\nhorizons = [3]\ndegrees = [5]\nseeds = 1\n");

@@ -31,13 +31,13 @@ void PrintTo(const Every& every, std::ostream* out) { *out << every.probes << ",
 
 Every every(const Scene& scene) { return {scene.probe_every, scene.energy_every}; }
 
-TEST(EnergyEvery, IsAHundredStepsAndFewerOfAShortRun) {
-  EXPECT_EQ(every(block("steps = 5000")), (Every{10, 100}));
-  EXPECT_EQ(every(block("steps = 3500")), (Every{7, 105}));
+TEST(EnergyEvery, IsTwoHundredStepsAndFewerOfAShortRun) {
+  EXPECT_EQ(every(block("steps = 5000")), (Every{10, 200}));
+  EXPECT_EQ(every(block("steps = 3500")), (Every{7, 175}));
   EXPECT_EQ(every(block("steps = 1000")), (Every{2, 50}));
   EXPECT_EQ(every(block("steps = 10")), (Every{1, 1}));
-  EXPECT_EQ(every(block("steps = 100000")), (Every{200, 200}));
-  EXPECT_EQ(every(block("steps = 5000\nprobe_every = 30")), (Every{30, 120}));
+  EXPECT_EQ(every(block("steps = 200000")), (Every{400, 400}));
+  EXPECT_EQ(every(block("steps = 5000\nprobe_every = 30")), (Every{30, 210}));
   EXPECT_EQ(every(block("steps = 5000\nprobe_every = 0")), (Every{0, 0}));
 }
 

@@ -86,6 +86,32 @@ TEST(Packing, SurfaceSitesAreSafe) {
   }
 }
 
+// Sites that are passed over as far from the surface are as those around them: all sites of the bounds, each
+// held against the shape, are the same.
+TEST(Packing, SitesThatArePassedOverAreOutside) {
+  const Fcc fcc{.pitch = 0.1, .offset = {0.01, 0.02, 0.03}};
+  const auto rod = capsule({0, 0, 0}, {3, 3, 3}, 0.15), ball = sphere({2.5, 0.3, 0.5}, 0.3);
+  for (const ShapePtr& shape : {rod, unite({rod, ball}), subtract(ball, {sphere({2.5, 0.3, 0.5}, 0.2)})}) {
+    std::vector<Vec3> expected;
+    const Periodic bounds{.origin = shape->bounds().low,
+                          .extent = shape->bounds().high - shape->bounds().low};
+    for (const Vec3& x : pack(fcc, nullptr, bounds))
+      if (shape->distance(x) <= 1e-7) expected.push_back(x);
+    EXPECT_EQ(pack(fcc, shape.get(), {}), expected);
+    EXPECT_GT(expected.size(), 50U);
+  }
+}
+
+// A thin rod along the diagonal of a cube of 4e10 sites: the rows of the cube, and a few looks at each.
+TEST(Packing, WorkOfAThinBodyIsThatOfItsSurface) {
+  const auto rod = capsule({0, 0, 0}, {1, 1, 1}, 1e-3);
+  const PackingSize size = packing_size({.pitch = 3.3e-4}, rod.get(), {});
+  EXPECT_GT(size.tested, 1.8e7);
+  EXPECT_LT(size.tested, 3e8);
+  const auto ball = sphere({0, 0, 0}, 0.5);
+  EXPECT_LT(packing_size({.pitch = 3.3e-4}, ball.get(), {}).tested, 1e9);
+}
+
 // Rows of the crystal that pass a thin body by are not tested; none is lost, none comes in another order.
 // Oracle: every site of a ball around it.
 TEST(Packing, AThinTurnedPlateLosesNoSite) {
