@@ -74,7 +74,7 @@ class ProgramTerms final : public RoundsTerms {
       near_.emplace(program.reach, periodic);
     work_.assign(program.particle_numbers, std::vector<double>(body.size(), 0));
     next_ = work_;
-    if (near_) near_->update(x0_);
+    if (near_ && !program.setup.empty()) near_->update(x0_);
     start_particles();
     start_bonds();
     for (size_t k = 0; k < program.setup.size(); ++k) {

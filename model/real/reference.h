@@ -36,6 +36,8 @@ struct RealOptions {
   // each step, as by a machine without order.
   uint64_t order_seed = 0;
   uint64_t first_step = 0;  // the step that the body is the state of
+  // Rounds are run when somebody asks for what they make: of a state that another engine moves.
+  bool on_demand = false;
 };
 
 // Threads that pay for themselves on this machine.

@@ -34,7 +34,7 @@ class RoundsEngine final : public RealEngine {
         steps_(options.first_step) {
     recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
-    refresh();
+    if (!options.on_demand) refresh();
     kick_.clear();
   }
 

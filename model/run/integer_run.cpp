@@ -51,7 +51,7 @@ std::unique_ptr<IntegerEngine> made(const ProgramSetting& setting, const State& 
 
 IntegerRun::IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step,
                        const MakeIntegerEngine& make)
-    : RoundsRun(scene, body, {}, setting.fixed.cell_edge, step),
+    : RoundsRun(scene, body, {.on_demand = true}, setting.fixed.cell_edge, step),
       setting_(setting),
       program_(made(setting, state_with_fields(scene, body_, setting, step), make)) {
   stale_ = true;
@@ -59,7 +59,7 @@ IntegerRun::IntegerRun(const Scene& scene, const Body& body, const ProgramSettin
 
 IntegerRun::IntegerRun(const Scene& scene, const ProgramSetting& setting, const State& from,
                        const MakeIntegerEngine& make)
-    : RoundsRun(scene, scene.body, {}, setting.fixed.cell_edge, from.step),
+    : RoundsRun(scene, scene.body, {.on_demand = true}, setting.fixed.cell_edge, from.step),
       setting_(setting),
       program_(made(setting, from, make)) {
   stale_ = true;
