@@ -76,8 +76,9 @@ class CellBlocks {
 };
 
 // The ways between neighbours fill the box around all that hangs together: of a rod that slants its length to
-// the third. So many cells are made of those that were asked for, and so many in any case.
-constexpr size_t kMostClosed = 8, kAlwaysClosed = 2'000'000;
+// the third. So many cells are made of those that were asked for, so many in any case, and so many more at
+// most.
+constexpr size_t kMostClosed = 8, kAlwaysClosed = 2'000'000, kMostAdded = 8'000'000;
 
 [[noreturn]] void refuse_closure(size_t asked, size_t most) {
   throw InputError(
@@ -213,7 +214,8 @@ void Lattice::close() {
   };
   // The sorted cells get them after the last round: along a needle there are as many rounds as cells.
   const auto middle = static_cast<ptrdiff_t>(cells_.size());
-  const size_t most = std::max(kAlwaysClosed, kMostClosed * cells_.size());
+  const size_t most =
+      std::max(kAlwaysClosed, cells_.size() + std::min((kMostClosed - 1) * cells_.size(), kMostAdded));
   for (; !missing.empty(); sort_unique(missing)) {
     for (const Cell& c : missing)
       if (all.add(c)) cells_.push_back(c);
