@@ -136,7 +136,8 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
 
 void EngineOptions::check(const Plan& plan) const {
   if (!rule_code.empty() && plan.program == nullptr)
-    throw InputError("--rule-code is of scenes whose [rule] is text", "the pair law is compiled already");
+    throw InputError("--rule-code is of a [rule] of text with rounds of its own",
+                     "the pair law is compiled already");
 }
 
 bool EngineOptions::is_real(const std::string& engine) const {

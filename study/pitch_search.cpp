@@ -162,7 +162,9 @@ void check_rule(const ConfigValue& rule, const Base& base) {
   const Packings packings(base);
   const auto per_pitch = [&](double pitch) {
     const Scene scene = resolve(base, packings.at(pitch, 0)).scene;
-    return std::pair{scene.rule.cutoff() / pitch, rounds_of(scene.rule)->stiffness() / pitch};
+    const RoundsRule* rounds = rounds_of(scene.rule);  // none: the text is a pair law
+    const double stiffness = rounds != nullptr ? rounds->stiffness() : -scene.rule.law->slope(pitch);
+    return std::pair{scene.rule.cutoff() / pitch, stiffness / pitch};
   };
   const double pitch = packings.first(), finer = std::stod(written(kFiner * pitch));
   const auto [reach, stiffness] = per_pitch(pitch);

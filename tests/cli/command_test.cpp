@@ -141,7 +141,8 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
       {"crosscheck", "scenes/rules/heat.toml", "--engines", "golden,gpu", "--rule-code", "compiled"},
       "--rule-code compiled is an option of the lattice engine, not of golden,gpu\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--rule-code", "compiled"},
-                 "--rule-code is of scenes whose [rule] is text\n  hint: the pair law is compiled already\n");
+                 "--rule-code is of a [rule] of text with rounds of its own\n  hint: the pair law is "
+                 "compiled already\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stall-rate", "0.2"},
                  "--stall-rate is an option of the systemc and the rtl engine, not of lattice\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--resume"},

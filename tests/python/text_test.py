@@ -210,7 +210,7 @@ class Refusals(unittest.TestCase):
             (lambda: cuboct.run(text("heat"), "gpu", rule_code="compiled"),
              "--rule-code compiled is an option of the lattice engine, not of gpu"),
             (lambda: cuboct.Simulation(scene_file("lj_block.toml"), "lattice", rule_code="compiled"),
-             "--rule-code is of scenes whose [rule] is text"),
+             "--rule-code is of a [rule] of text with rounds of its own"),
             (lambda: cuboct.run(text("heat"), "lattice", rule_code="fast"), "unknown rule_code 'fast'"),
         ):  # fmt: skip
             with self.assertRaises(cuboct.InputError) as caught:
