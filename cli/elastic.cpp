@@ -14,6 +14,9 @@
 #include "model/analysis/strained_cell.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
+#include "model/scene/changes.h"
+#include "model/scene/config.h"
+#include "model/scene/rule_cell.h"
 #include "model/solid/cleavage.h"
 #include "model/trace/plot.h"
 
@@ -43,14 +46,34 @@ Scene scene_of_law(const ElasticOptions& options) {
   return parse_scene(text + "[run]\nsteps = 0\n", "--law");
 }
 
-Scene scene_of(const ElasticOptions& options) {
+// Without the scene's own starts of fields that ask where they are, as velocities and constraints leave no
+// mark.
+Scene scene_of_matter(const std::string& path, std::vector<std::string>& left_out) {
+  const std::vector<StageName> stages = stages_of(path);
+  const SceneChoice choice{.stage = stages.empty() ? "" : stages.front().name};
+  Scene scene = read_scene(path, choice);
+  const RoundsRule* rounds = rounds_of(scene.rule);
+  const std::string text = read_config_text(path);
+  const auto rule = rounds && rounds->text() ? parse_config(text, path).find("rule") : std::nullopt;
+  if (!rule || !rule->is_table()) return scene;
+  std::vector<Change> changes;
+  for (const std::string& name : starts_by_place(scene.rule)) {
+    const Change change{"rule.start." + name, ""};
+    if (with_changes(text, path, {change}) == text) continue;
+    left_out.push_back(name);
+    changes.push_back(change);
+  }
+  return changes.empty() ? scene : parse_scene(with_changes(text, path, changes), path, choice);
+}
+
+Scene scene_of(const ElasticOptions& options, std::vector<std::string>& left_out) {
   if (options.scene.empty() == options.law.empty())
     throw InputError("either a scene or --law",
                      "cuboct elastic SCENE, or cuboct elastic --law 'kind = ...' --pitch P");
   if (!options.scene.empty()) {
     if (!options.pitch.empty() || !options.density.empty() || options.reduced)
       throw InputError("--pitch, --density and --reduced go with --law", "a scene has its own");
-    return read_scene(options.scene);
+    return scene_of_matter(options.scene, left_out);
   }
   if (options.pitch.empty()) throw InputError("--law needs --pitch, the distance of nearest particles");
   if (options.density.empty() && !options.reduced)
@@ -82,6 +105,7 @@ std::vector<Cleavage> cleavage_of(const Rule& rule, const CrystalCell& cell, con
 
 ElasticFindings findings_of(const ElasticOptions& options, const Scene& scene) {
   ElasticFindings out;
+  refuse_cell(scene.rule);
   SceneCell start = cell_of(scene, options.material);
   if (start.cell.x.size() > kMostForElastic)
     throw InputError(fmt::format("{} particles: 'cuboct elastic' solves for at most {}", start.cell.x.size(),
@@ -94,18 +118,23 @@ ElasticFindings findings_of(const ElasticOptions& options, const Scene& scene) {
   StrainedCell rest(scene.rule, start.cell, options.threads);
   out.relaxing = rest.relax();
   out.density = density_of(scene.rule, rest.cell());
-  out.sums = elastic_tensor(scene.rule, rest.cell());
   out.strain = options.strain;
-  out.strained =
-      constants_by_strain(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations);
+  out.by_sums = rounds_of(scene.rule) == nullptr;
+  const auto strained = [&](const CrystalCell& cell) {
+    return constants_by_strain(scene.rule, cell, options.strain, options.threads, out.evaluations);
+  };
+  out.sums = tensor_of(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations);
+  out.strained = out.by_sums ? strained(rest.cell()) : out.sums.c;
   // The grains of a box have no direction in common.
   if (scene.pitch > 0 && (scene.grains == 0 || out.particles == 1)) out.crystal = scene.orientation;
-  if (out.crystal && out.particles == 1) out.cleavage = cleavage_of(scene.rule, rest.cell(), *out.crystal);
+  if (out.crystal && out.particles == 1 && out.by_sums)
+    out.cleavage = cleavage_of(scene.rule, rest.cell(), *out.crystal);
   for (int n = 2; n <= options.layers; ++n) {
     const CrystalCell slab = without_stress(scene.rule, slab_of(scene, options.material, n), options.threads);
-    out.slabs.push_back({n, slab.vectors(2, 2), plane_modulus(elastic_tensor(scene.rule, slab).c),
-                         plane_modulus(constants_by_strain(scene.rule, slab, options.strain, options.threads,
-                                                           out.evaluations))});
+    const double by_strain = plane_modulus(strained(slab));
+    out.slabs.push_back({n, slab.vectors(2, 2),
+                         out.by_sums ? plane_modulus(elastic_tensor(scene.rule, slab).c) : by_strain,
+                         by_strain});
   }
   return out;
 }
@@ -141,10 +170,13 @@ void draw(const ElasticFindings& found, const std::string& path) {
 int elastic(const ElasticOptions& options) {
   check(options);
   catch_interrupts();
-  const Scene scene = scene_of(options);
+  std::vector<std::string> left_out;
+  const Scene scene = scene_of(options, left_out);
   const ElasticFindings found = [&] {
     try {
-      return findings_of(options, scene);
+      ElasticFindings all = findings_of(options, scene);
+      all.left_out = left_out;
+      return all;
     } catch (const InputError& error) {
       throw scene.places.placed(error);
     }

@@ -2,6 +2,7 @@
 #include "cli/elastic_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -79,9 +80,10 @@ std::string slab_table(const ElasticFindings& found) {
   std::string out = fmt::format("\n{:>6} {:>12} {:>12} {:>12} {:>10}\n", "layers", "thickness", "E along x",
                                 "by strain", "over bulk");
   for (const SlabModulus& slab : found.slabs)
-    out += fmt::format("{:>6} {:>12} {:>12} {:>12} {:>10.4f}\n", slab.layers,
-                       quantity_text(slab.thickness, "m"), quantity_text(slab.by_sums, "Pa"),
-                       quantity_text(slab.by_strain, "Pa"), slab.by_sums / bulk);
+    out +=
+        fmt::format("{:>6} {:>12} {:>12} {:>12} {:>10.4f}\n", slab.layers, quantity_text(slab.thickness, "m"),
+                    found.by_sums ? quantity_text(slab.by_sums, "Pa") : "-",
+                    quantity_text(slab.by_strain, "Pa"), slab.by_sums / bulk);
   return out;
 }
 
@@ -134,9 +136,15 @@ std::string text_of(const ElasticFindings& found) {
                 fmt::format("up to {}: the constants are those under it", quantity_text(most, "Pa")));
   out += line("force evaluations",
               fmt::format("{} to the minimum, {} of strained cells", found.relaxing, found.evaluations));
-  out += matrix_text(c, "constants by lattice sums");
+  if (!found.left_out.empty())
+    out += line("left out",
+                fmt::format("the scene's start of {}: it asks where it is", fmt::join(found.left_out, ", ")));
+  if (found.by_sums) out += matrix_text(c, "constants by lattice sums");
   out += matrix_text(found.strained, fmt::format("constants by simulation, strains of {:g}", found.strain));
-  out += fmt::format("largest difference over the largest constant: {:.2g}\n", found.difference());
+  if (found.by_sums)
+    out += fmt::format("largest difference over the largest constant: {:.2g}\n", found.difference());
+  else
+    out += fmt::format("asymmetry over the largest constant: {:.2g}\n", found.asymmetry());
   if (!found.stable())
     return out +
            fmt::format("\nunstable: a strain has the stiffness {}\n", quantity_text(softest_strain(c), "Pa"));
@@ -159,13 +167,15 @@ std::string text_of(const ElasticFindings& found) {
 std::string json_of(const ElasticFindings& found) {
   std::string out = fmt::format(
       "{{\"scene\": {}, \"cell\": {}, \"particles\": {}, \"density\": {}, \"evaluations\": {},\n"
-      " \"constants\": {},\n \"strained\": {},\n \"born\": {},\n \"difference\": {}, \"stress\": [{}, {}, "
-      "{}],\n"
+      " \"constants\": {},\n \"strained\": {},\n \"born\": {},\n \"difference\": {}, \"asymmetry\": {}, "
+      "\"stress\": [{}, {}, {}],\n"
       " \"stable\": {}",
       json(found.scene), json(found.cell), found.particles, json(found.density),
       found.relaxing + found.evaluations, json_matrix(found.sums.c), json_matrix(found.strained),
-      json_matrix(found.sums.born), json(found.difference()), json_vector(found.sums.stress.row(0)),
-      json_vector(found.sums.stress.row(1)), json_vector(found.sums.stress.row(2)), found.stable());
+      found.by_sums ? json_matrix(found.sums.born) : "null",
+      found.by_sums ? json(found.difference()) : "null", json(found.asymmetry()),
+      json_vector(found.sums.stress.row(0)), json_vector(found.sums.stress.row(1)),
+      json_vector(found.sums.stress.row(2)), found.stable());
   if (!found.stable()) return out + "}\n";
   const Isotropic mean = hill_mean(found.sums.c);
   out += fmt::format(

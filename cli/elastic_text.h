@@ -31,6 +31,8 @@ struct ElasticFindings {
   double strain = 0;
   ElasticTensor sums;
   Matrix6 strained = Matrix6::Zero();  // Pa
+  bool by_sums = true;                 // else of a rule of text: `sums` is what the strained cells say
+  std::vector<std::string> left_out;   // fields whose starts in the scene ask where they are
   std::optional<Mat3> crystal;         // of a packing: its cubic axes
   std::vector<SlabModulus> slabs;
   std::vector<Cleavage> cleavage;  // of a packing of one material
@@ -39,6 +41,10 @@ struct ElasticFindings {
   // The largest difference of the two over the largest constant.
   double difference() const {
     return (sums.c - strained).cwiseAbs().maxCoeff() / sums.c.cwiseAbs().maxCoeff();
+  }
+  // The same of the constants and their transpose, which forces from an energy make equal at rest.
+  double asymmetry() const {
+    return (strained - strained.transpose()).cwiseAbs().maxCoeff() / strained.cwiseAbs().maxCoeff();
   }
 };
 

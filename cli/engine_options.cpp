@@ -49,6 +49,12 @@ void EngineOptions::add_machines(Command& command) {
               "seconds without an answer after which fpga asks the board again; default: 0.3")
       .range(0.001, 60.0)
       .type_name("T");
+  command
+      .option(
+          "--rule-code", rule_code,
+          "how lattice or gpu runs a rule of text: interpreted; of lattice, compiled before the first step; "
+          "automatic (default): lattice compiles once the run has lasted, gpu where CUDA's compiler is found")
+      .one_of({"automatic", "interpreted", "compiled"});
 }
 
 void EngineOptions::add_numbers(Command& command) {
@@ -108,6 +114,9 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
   refuse(timeout > 0, "--port-timeout", [](auto& row) { return row.port; });
   refuse(!precision.empty(), "--precision", [](auto& row) { return row.real; });
   refuse(integrator != "euler", "--integrator", [](auto& row) { return row.integrators; });
+  const std::string code = "--rule-code " + rule_code;
+  refuse(!rule_code.empty(), code.c_str(),
+         [&](auto& row) { return std::ranges::find(row.rule_codes, rule_code) != row.rule_codes.end(); });
   refuse(hashes_given, "--hash-every", [](auto& row) { return row.bits; });
   for (const std::string& engine : engines)
     if (precision == "fixed" && !engine_row(engine).bits)
@@ -123,6 +132,12 @@ void EngineOptions::check(const std::vector<std::string>& engines, const Input& 
   read_fault_share(input.faults);
   if (!some(links))
     throw InputError("--inject-faults needs an engine that has links", list_of(engines_that(links)));
+}
+
+void EngineOptions::check(const Plan& plan) const {
+  if (!rule_code.empty() && plan.program == nullptr)
+    throw InputError("--rule-code is of a [rule] of text with rounds of its own",
+                     "the pair law is compiled already");
 }
 
 bool EngineOptions::is_real(const std::string& engine) const {

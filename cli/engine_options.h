@@ -21,20 +21,23 @@ struct EngineOptions {
   double timeout = 0;                // s; 0 likewise
   std::string precision;             // "fixed", "float", "double"; empty: the engine's own choice
   std::string integrator = "euler";  // or "verlet"
+  std::string rule_code;             // EngineRow::rule_codes; empty: the engine's own choice
   // Of `run` alone:
   uint64_t hash_every = 0;
   bool hashes_given = false, cycles = false, joules = false, resume = false;
   std::string checkpoint_every;
   bool quiet = false;  // programs of engines say nothing, and what they would is an error's text
 
-  void add_machines(
-      Command& command);  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout
+  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout, --rule-code
+  void add_machines(Command& command);
   void add_numbers(Command& command);  // --precision, --integrator
   void add_run(Command& command);      // what is of `run` alone
 
   // Throws InputError where an option is given that none of the engines has, or not so, or one lacks that it
   // needs.
   void check(const std::vector<std::string>& engines, const Input& input) const;
+  // The same where an option is of other scenes than the plan's.
+  void check(const Plan& plan) const;
 
   // Whether the engine then computes in real numbers.
   bool is_real(const std::string& engine) const;

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "cli/estimate.h"
 #include "emu/lattice/program.h"
 #include "emu/lattice/run.h"
@@ -31,6 +33,8 @@ std::vector<std::string> own_arguments(const EngineRow& row, const Input& input,
   add(!options.devices.empty() && row.devices,
       {"--devices", fmt::format("{}", fmt::join(options.devices, ","))});
   add(options.joules && row.devices, {"--joules"});
+  add(std::ranges::find(row.rule_codes, options.rule_code) != row.rule_codes.end(),
+      {"--rule-code", options.rule_code});
   add(row.port, {"--port", options.port});
   add(row.port && options.baud > 0, {"--baud", std::to_string(options.baud)});
   add(row.port && options.timeout > 0, {"--timeout", fmt::format("{}", options.timeout)});
@@ -66,6 +70,7 @@ Recorded run_here(const EngineRow& row, const Loaded& loaded, const EngineOption
   }
   emu::LatticeRun run{request, {}};
   run.engine.threads = options.threads;
+  run.engine.rule_code = emu::rule_code_of(options.rule_code);
   return emu::run_lattice(scene, plan, run);
 }
 
@@ -75,6 +80,7 @@ EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded
                      const EngineOptions& options, RunRequest request, const std::string& path, bool once) {
   const EngineRow& row = engine_row(engine);
   check_runs(loaded.scene, loaded.setup.plan.arch, engine);
+  options.check(loaded.setup.plan);
   if (!row.ranks.empty()) check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!options.checkpoint_every.empty()) read_interval(options.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = options.resume;

@@ -20,6 +20,7 @@
 #include "model/base/output.h"
 #include "model/base/progress.h"
 #include "model/base/text.h"
+#include "model/rules/rounds_rule.h"
 #include "model/solid/dynamical_matrix.h"
 #include "study/stability.h"
 #include "study/stability_pictures.h"
@@ -247,7 +248,10 @@ void stability(const StabilityOptions& options) {
   check(options);
   const Scene scene = read_scene(options.input.scene);
   const Arch arch = read_arch(options.input.arch);
-  with_places(scene, arch, [&] { measure(options, scene, arch); });
+  with_places(scene, arch, [&] {
+    refuse_rounds(scene.rule, "'cuboct stability'");
+    measure(options, scene, arch);
+  });
 }
 
 }  // namespace

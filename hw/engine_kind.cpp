@@ -12,6 +12,13 @@
 #include "model/run/static_engine.h"
 
 namespace cuboct {
+namespace {
+
+ProgramSetting program_setting(const Plan& plan) {
+  return {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
+}
+
+}  // namespace
 
 FixedSetting setting_of(const Scene& scene, const Plan& plan, int threads) {
   return {scene.rule, plan.rule, plan.lattice, plan.origin, threads};
@@ -48,15 +55,21 @@ EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& pl
 }
 
 State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
-  return from ? checked_state(*from, plan) : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+  if (from == nullptr)
+    return plan.program ? program_beginning(scene, program_setting(plan))
+                        : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+  State state = checked_state(*from, plan);
+  return plan.program ? state_of_checkpoint(std::move(state), *plan.program, from->head().engine.own) : state;
+}
+
+std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, const State& from,
+                                        const MakeIntegerEngine& make) {
+  return std::make_unique<IntegerRun>(scene, program_setting(plan), from, make);
 }
 
 std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, CheckpointReader* from,
                                         const MakeIntegerEngine& make) {
-  const ProgramSetting setting{*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
-  if (from == nullptr) return std::make_unique<IntegerRun>(scene, scene.body, setting, 0, make);
-  const State state = state_of_checkpoint(checked_state(*from, plan), *plan.program, from->head().engine.own);
-  return std::make_unique<IntegerRun>(scene, setting, state, make);
+  return integer_run(scene, plan, begin_of(scene, plan, from), make);
 }
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan) {

@@ -25,7 +25,9 @@ EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& p
 // Of one in real numbers; the plan gives its hash and the cells in which speeds are told.
 EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& plan, bool floats);
 
-// Of a plan with a program: from a checkpoint, or from the scene's body.
+// Of a plan with a program: from a state, by id or by slot; from a checkpoint, or from the scene's body.
+std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, const State& from,
+                                        const MakeIntegerEngine& make = {});
 std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, CheckpointReader* from,
                                         const MakeIntegerEngine& make = {});
 

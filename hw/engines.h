@@ -22,21 +22,22 @@ enum class Here : uint8_t { none, golden, lattice, reference };
 struct EngineRow {
   std::string name;
   Here here = Here::none;
-  bool bits = true;              // holds those of the fixed rule
-  bool text = false;             // runs rules that are text, in integers
-  bool real = false;             // computes in real numbers, if told to or always
-  bool integrators = false;      // has several
-  bool studied = false;          // by `cuboct explore`
-  bool devices = false;          // runs on GPUs, not on the host's threads
-  bool port = false;             // reaches its machine over a serial port
-  bool links = false;            // that may stall or fail
-  bool cycles = false;           // counts the machine's cycles, always
-  bool counts_if_asked = false;  // or where --cycles asks for it
-  std::string unsaved = {};      // why it leaves no checkpoints; empty: it does
-  uint64_t hash_every = 1;       // steps between two hashes where the user says nothing; 0: none
-  std::string program = {};      // of its own, beside cuboct, where it does not run here
-  std::string ranks = {};        // the program in which several processes share a scene
-  std::string needs = {};        // hint where the program is missing
+  bool bits = true;                          // holds those of the fixed rule
+  bool text = false;                         // runs rules that are text, in integers
+  bool real = false;                         // computes in real numbers, if told to or always
+  bool integrators = false;                  // has several
+  bool studied = false;                      // by `cuboct explore`
+  bool devices = false;                      // runs on GPUs, not on the host's threads
+  bool port = false;                         // reaches its machine over a serial port
+  bool links = false;                        // that may stall or fail
+  bool cycles = false;                       // counts the machine's cycles, always
+  bool counts_if_asked = false;              // or where --cycles asks for it
+  std::vector<std::string> rule_codes = {};  // how it can run rules that are text; empty: in one way
+  std::string unsaved = {};                  // why it leaves no checkpoints; empty: it does
+  uint64_t hash_every = 1;                   // steps between two hashes where the user says nothing; 0: none
+  std::string program = {};                  // of its own, beside cuboct, where it does not run here
+  std::string ranks = {};                    // the program in which several processes share a scene
+  std::string needs = {};                    // hint where the program is missing
   EngineCost cost = {};
 };
 

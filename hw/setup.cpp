@@ -147,9 +147,9 @@ const RuleProgram* text_of(const Rule& rule) {
   return rounds == nullptr ? nullptr : rounds->text();
 }
 
-void add_program(const RuleProgram& text, const Scene& scene, Plan& plan) {
+void add_program(const RuleProgram& text, const Scene& scene, const Body& begin, Plan& plan) {
   plan.program = std::make_shared<IntegerProgram>(integer_program(
-      text, plan.rule, plan.arch.capacity, starts_of(text, scene.rule, scene.body, scene.periodic)));
+      text, plan.rule, plan.arch.capacity, starts_of(text, scene.rule, begin, scene.periodic)));
   const std::string certificate = graph::certificate_of(plan.program->program);
   if (const graph::Refusal refusal = graph::refusal_of(certificate); refusal.line != 0)
     throw std::logic_error(
@@ -224,7 +224,7 @@ Plan plan_with(const Scene& scene, Arch arch, See see, bool programs = false) {
     if (std::string warning = mesh_warning(mesh); !warning.empty()) warnings.push_back(std::move(warning));
   Plan plan = make_plan(std::move(rule), std::move(arch), std::move(lattice), origin,
                         static_cast<uint32_t>(scene.body.size()));
-  if (text != nullptr) add_program(*text, scene, plan);
+  if (text != nullptr) add_program(*text, scene, scene.body, plan);
   plan.reasons = chosen.reasons;
   plan.warnings = std::move(warnings);
   return plan;
@@ -293,11 +293,13 @@ Setup make_setup(const Scene& scene, const Arch& arch) {
   return {std::move(plan), std::move(initial)};
 }
 
-Setup going_on(const Scene& scene, const Plan& before, const State& now) {
+Setup going_on(const Scene& scene, const Plan& before, const State& now, const Body& begin) {
   const FixedRule& old = before.rule;
   const Arch& arch = before.arch;
-  FixedRule rule =
-      with_places(scene, arch, [&] { return quantise(scene.rule, old.cell_edge, old.widths, arch.table); });
+  FixedRule rule = with_places(scene, arch, [&] {
+    return before.program ? quantise_without_law(scene.rule, old.cell_edge, old.widths)
+                          : quantise(scene.rule, old.cell_edge, old.widths, arch.table);
+  });
   rule.axes = old.axes;
   for (const FixedType& type : rule.types)
     if (rule.axes == 2 && (type.velocity[2] != 0 || type.gravity[2] != 0))
@@ -311,6 +313,8 @@ Setup going_on(const Scene& scene, const Plan& before, const State& now) {
   for (Particle& particle : state.particles) particle.cell = lattice.find(before.lattice.cell(particle.cell));
   Plan plan = make_plan(carrying(std::move(rule), arch.carry), arch, std::move(lattice), before.origin,
                         before.particles);
+  if (before.program)
+    with_places(scene, arch, [&] { add_program(*text_of(scene.rule), scene, begin, plan); });
   plan.reasons = before.reasons;
   plan.warnings = before.warnings;
   return {std::move(plan), std::move(state)};

@@ -46,9 +46,10 @@ Plan program_plan_of(const Scene& scene, const Arch& arch);
 
 // The plan and the state with which a run goes on from `now`, a state of `before`, under constraints or
 // gravity that have changed: formats, cells and origin stay, so `now` is kept to the last bit. `scene` has
-// the new rule and, as its body, `now` in real units: from there cells are reached. InputError where the
-// formats cannot hold the new rule.
-Setup going_on(const Scene& scene, const Plan& before, const State& now);
+// the new rule and, as its body, `now` in real units: from there cells are reached. `begin`: the body of
+// which `before` was made; of it formats of a rule that is text are made. InputError where the formats cannot
+// hold the new rule.
+Setup going_on(const Scene& scene, const Plan& before, const State& now, const Body& begin);
 
 // The particles of make_setup's initial state, out of the body that plan_of saw. It uses the body up: what
 // was asked for is given back to the system, so that an engine that is fed from here grows as the body

@@ -57,6 +57,17 @@ py::dict dict_of(const Body& body) {
   return state;
 }
 
+py::dict dict_of(const Fields& fields, size_t particles) {
+  py::dict out;
+  for (const auto& [name, values] : fields) {
+    py::array flat = array_of(values);
+    const size_t numbers = particles > 0 ? values.size() / particles : 1;
+    if (numbers > 1) flat = flat.reshape({particles, numbers});
+    out[name.c_str()] = flat;
+  }
+  return out;
+}
+
 // (values, units) by name, with the steps at which probes were read and those of energies, temperature and
 // pressure.
 py::tuple curves_of(const std::vector<Curve>& curves, double dt) {
@@ -103,6 +114,7 @@ py::dict dict_of(const WholeRun& run) {
   py::list frames;
   for (const Kept& kept : run.kept) {
     py::dict frame = dict_of(kept.body);
+    frame["fields"] = dict_of(kept.fields, kept.body.size());
     frame["step"] = kept.step;
     frames.append(frame);
   }
@@ -198,6 +210,8 @@ EngineOptions options_of(const py::dict& given) {
   if (take("precision", options.precision))
     one_of("precision", options.precision, {"fixed", "float", "double"});
   if (take("integrator", options.integrator)) one_of("integrator", options.integrator, {"euler", "verlet"});
+  if (take("rule_code", options.rule_code))
+    one_of("rule_code", options.rule_code, {"automatic", "interpreted", "compiled"});
   options.hashes_given = take("hash_every", options.hash_every);
   if (options.hashes_given && options.hash_every < 1) throw InputError("hash_every = 0: at least 1");
   return options;
@@ -262,20 +276,12 @@ PYBIND11_MODULE(_cuboct, module) {
       .def("leave", &Simulation::leave, Unlocked())
       .def("fields",
            [](Simulation& simulation) {
-             std::vector<std::pair<std::string, std::vector<double>>> fields;
+             Fields fields;
              {
                py::gil_scoped_release unlocked;
                fields = simulation.fields();
              }
-             py::dict out;
-             const size_t particles = simulation.particles();
-             for (const auto& [name, values] : fields) {
-               py::array flat = array_of(values);
-               const size_t numbers = particles > 0 ? values.size() / particles : 1;
-               if (numbers > 1) flat = flat.reshape({particles, numbers});
-               out[name.c_str()] = flat;
-             }
-             return out;
+             return dict_of(fields, simulation.particles());
            })
       .def("step_count", &Simulation::step_count, Unlocked())
       .def("state",

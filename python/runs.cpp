@@ -16,6 +16,7 @@
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/steps.h"
+#include "model/rules/rounds_rule.h"
 #include "model/trace/compare.h"
 #include "python/catch_interrupt.h"
 
@@ -56,6 +57,14 @@ void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
   check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), "");
 }
 
+// What the rule shows of the frame's particles.
+Fields shown_by(const Rule& rule, const RealFrame& frame) {
+  Fields fields;
+  for (size_t k = 0; k < frame.shown.size(); ++k)
+    fields.emplace_back(rounds_of(rule)->declaration().shown[k].name, frame.shown[k]);
+  return fields;
+}
+
 }  // namespace
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
@@ -81,10 +90,11 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   request.keep = [&](const RunState& frame) {
     if (!asked.leave.empty()) last = frame;
     if (const State* state = std::get_if<State>(&frame)) {
-      result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin)});
+      result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin), {}});
     } else {
       const RealFrame& real = std::get<RealFrame>(frame);
-      result.kept.push_back({real.step, Body{real.x, real.v, {}, scene.body.type, nullptr}});
+      result.kept.push_back(
+          {real.step, Body{real.x, real.v, {}, scene.body.type, nullptr}, shown_by(scene.rule, real)});
     }
   };
   const Scratch scratch;

@@ -26,6 +26,7 @@ struct RunAsked {
 struct Kept {
   uint64_t step = 0;
   Body body;
+  Fields fields;
 };
 
 struct WholeRun {

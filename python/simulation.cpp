@@ -15,7 +15,6 @@
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
-#include "model/rules/rounds_rule.h"
 #include "model/run/golden_engine.h"
 #include "model/run/rounds_run.h"
 #include "model/scene/static_loading.h"
@@ -80,12 +79,11 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   if (engine.empty()) engine_name_ = engine_for(loaded.scene);
   options.check({engine_name_}, {});
   check_runs(loaded.scene, loaded.setup.plan.arch, engine_name_);
-  if (engine_row(engine_name_).here != Here::reference)
-    with_places(loaded.scene, loaded.setup.plan.arch,
-                [&] { refuse_rounds(loaded.scene.rule, "a Simulation of " + engine_name_); });
+  options.check(loaded.setup.plan);
   check_workers(options.threads, options.ranks, loaded.setup.plan);
   if (!anyway) check_size(loaded, engine_name_, options);
   real_ = options.is_real(engine_name_);
+  text_ = loaded.setup.plan.program != nullptr;
   program_ = engine_row(engine_name_).here == Here::none || options.ranks > 1;
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
@@ -112,7 +110,9 @@ void Simulation::make_engine() {
   present_.reset();
   const Plan& plan = setup_.plan;
   const Here here = engine_row(engine_name_).here;
-  if (program_) {
+  if (text_) {
+    engine_ = with_places(scene_, plan.arch, [&] { return engine_of_text(); });
+  } else if (program_) {
     engine_ = std::make_unique<ProgramEngine>(sources_, engine_name_, options_, scene_, setup_);
   } else if (here == Here::reference) {
     RealOptions real = options_.real_options();
@@ -126,6 +126,21 @@ void Simulation::make_engine() {
     lattice_.from = &setup_.initial;
     engine_ = emu::lattice_kind(scene_, plan, lattice_).make(nullptr, false);
   }
+}
+
+std::unique_ptr<Engine> Simulation::engine_of_text() {
+  const Plan& plan = setup_.plan;
+  if (program_)
+    throw InputError(fmt::format("a rule of text is not stepped in the {} engine{}", engine_name_,
+                                 options_.ranks > 1 ? " of several processes" : ""),
+                     "golden and lattice step it, with the same bits; cuboct.run runs it whole")
+        .about({"rule.file", "rule"});
+  if (engine_row(engine_name_).here == Here::golden) return integer_run(scene_, plan, setup_.initial);
+  emu::LatticeOptions lattice;
+  lattice.threads = options_.threads;
+  lattice.rule_code = emu::rule_code_of(options_.rule_code);
+  return integer_run(scene_, plan, setup_.initial,
+                     [&](const State& state) { return emu::integer_lattice(plan, state, lattice); });
 }
 
 // Engines may lose their state in a step that fails: what was done is done again, to the same bits.
@@ -248,7 +263,7 @@ void Simulation::leave(const std::string& directory) {
   const std::lock_guard lock(mutex_);
   const Plan& plan = setup_.plan;
   TraceHead head{scene_, nullptr, nullptr, plan.origin, plan.arch.text};
-  if (!real_) head.rule = &plan.rule, head.lattice = &plan.lattice;
+  if (!real_ && !text_) head.rule = &plan.rule, head.lattice = &plan.lattice;
   Trace rest;
   rest.engine = engine_name_;
   rest.plan_hash = plan.hash;
@@ -258,7 +273,7 @@ void Simulation::leave(const std::string& directory) {
   leave_state(directory, head, engine_->frame(false), rest);
 }
 
-std::vector<std::pair<std::string, std::vector<double>>> Simulation::fields() {
+Fields Simulation::fields() {
   const std::lock_guard lock(mutex_);
   auto* rounds = dynamic_cast<RoundsRun*>(engine_.get());
   if (rounds == nullptr) return {};
@@ -314,11 +329,11 @@ void Simulation::change(const std::string& call, const std::function<void(Rule&)
     start_ = *engine_->saved_body();
     own_ = engine_->memory().own;
   } else {
-    const RunState frame = engine_->frame(false);
+    const RunState frame = engine_->integers();
     const State& state = std::get<State>(frame);
     const Plan& plan = setup_.plan;
     changed.body = to_real(state, plan.rule, plan.lattice, plan.origin);
-    of_call([&] { setup_ = going_on(changed, plan, state); });
+    of_call([&] { setup_ = going_on(changed, plan, state, scene_.body); });
   }
   first_step_ = now();
   scene_.rule = std::move(changed.rule);
@@ -327,7 +342,7 @@ void Simulation::change(const std::string& call, const std::function<void(Rule&)
 
 const StrainMeter& Simulation::strain() {
   if (strain_) return *strain_;
-  if (real_) return strain_.emplace(strain_meter(scene_, scene_.packing().x));
+  if (real_ || text_) return strain_.emplace(strain_meter(scene_, scene_.packing().x));
   std::vector<Vec3> initial;
   initial.reserve(scene_.body.size());
   for (uint32_t id = 0; id < scene_.body.size(); ++id)

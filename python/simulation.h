@@ -56,8 +56,7 @@ class Simulation {
   EnergiesNow energies();
   std::vector<Curve> curves();
   void leave(const std::string& directory);  // the present state, where another run may begin
-  // By name what a [rule] shows of its particles, [particle x its numbers]; none of pair laws.
-  std::vector<std::pair<std::string, std::vector<double>>> fields();
+  Fields fields();
 
   // m/s, of all particles that the constraint holds or moves, from the next step on.
   void set_velocity(const std::string& constraint, const Vec3& velocity);
@@ -77,6 +76,7 @@ class Simulation {
 
  private:
   void make_engine();
+  std::unique_ptr<Engine> engine_of_text();
   void go_to(uint64_t end, bool until);
   bool is_over() const;
   void advance(uint64_t steps);
@@ -98,6 +98,7 @@ class Simulation {
   EngineOptions options_;
   Sources sources_;
   bool real_ = false, program_ = false;  // program_: the engine is one
+  bool text_ = false;                    // a rule that is text, in integers: states are shown in real numbers
   uint64_t first_step_ = 0;              // of the engine
   uint64_t probe_every_ = 0, energy_every_ = 0;
   emu::LatticeChoice lattice_;

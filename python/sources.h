@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/command.h"
@@ -27,6 +28,9 @@ void read_stage(const Sources& sources);
 // The same as files, which programs read: the scene's own where it is what the file holds, so that paths
 // within count from there.
 Input write_sources(const Sources& sources, const Scratch& scratch);
+
+// By name what a [rule] shows of its particles, [particle x its numbers]; none of pair laws.
+using Fields = std::vector<std::pair<std::string, std::vector<double>>>;
 
 // Ctrl-C ended what was asked for.
 class Interrupted : public std::exception {};

@@ -4,6 +4,8 @@
 #include "hw/node_area.h"
 #include "hw/setup.h"
 #include "model/contract/neighbours.h"
+#include "model/rules/rounds_rule.h"
+#include "study/outcome.h"
 
 namespace cuboct::study {
 namespace {
@@ -25,6 +27,7 @@ double ordered_pairs(const Scene& scene) {
 }  // namespace
 
 double cost_of(const Case& c) {
+  if (rounds_of(c.scene.rule) != nullptr) return kNotMeasured;
   const auto transistors = [&] {
     switch (c.settings.arithmetic) {
       case Arithmetic::float64:

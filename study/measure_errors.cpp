@@ -11,6 +11,7 @@
 #include "hw/setup.h"
 #include "model/analysis/measure.h"
 #include "model/base/error.h"
+#include "model/rules/rounds_rule.h"
 #include "study/cost.h"
 #include "study/gpu_program.h"
 #include "study/measure_run.h"
@@ -55,6 +56,8 @@ void check_body(const Body& body, const Scene& scene) {
 }
 
 void compare_forces(const Case& c, const Plan* plan, const Truth& own, Outcome& outcome) {
+  // Of rounds in integers doubles tell the forces; a state without what its bonds keep has none.
+  if (rounds_of(c.scene.rule) != nullptr && (plan != nullptr || has_reference_bonds(c.scene.rule))) return;
   std::vector<double> errors;
   for (const KeptState& state : own.states) {
     check_body(state.body, c.scene);
@@ -112,13 +115,16 @@ bool uses_energies(const Study& study) {
 }
 
 void measure_run(const Study& study, const Truth& truth, const Truth& own, const Case& c, Outcome& outcome) {
-  const bool conserves = keeps_energy(c.scene.rule, c.scene.periodic);
+  // What a rule of rounds keeps, it does not say.
+  const bool pairs = rounds_of(c.scene.rule) == nullptr;
+  const bool conserves = pairs && keeps_energy(c.scene.rule, c.scene.periodic);
+  const bool carries = pairs && keeps_momentum(c.scene.rule);
   RunRequest request;
   request.grid = truth.grid;
   request.curves = !study.figures.empty();
   request.energies = conserves || uses_energies(study);
   // Without figures and energies nothing is asked of what comes after the horizon.
-  const bool whole = request.curves || request.energies || keeps_momentum(c.scene.rule);
+  const bool whole = request.curves || request.energies || carries;
   request.until = whole ? truth.grid.samples : truth.grid.horizon;
   request.keep = {truth.grid.horizon};
   const Run run = run_case(c, request);
@@ -144,7 +150,7 @@ void measure_run(const Study& study, const Truth& truth, const Truth& own, const
   }
   compare_figures(study, truth, run, outcome);
   if (conserves) measure_drift(run, own.largest_frequency, outcome);
-  if (keeps_momentum(c.scene.rule) && run.momentum_scale > 0)
+  if (carries && run.momentum_scale > 0)
     outcome.errors.momentum = run.momentum_change.norm() / run.momentum_scale;
 }
 
@@ -157,13 +163,15 @@ void measure(const Study& study, const Truth& truth, const Truth& own, Outcome& 
   outcome.particles = static_cast<uint32_t>(c.scene.body.size());
   std::optional<Plan> plan;
   if (c.settings.arithmetic == Arithmetic::fixed) {
-    plan = plan_of(c.scene, c.arch);
+    plan = lattice_plan(c.scene, c.arch);
     const auto bits = [&](const FixedTable& table) {
       return static_cast<int>(table.c0.size() + table.c1.size() + table.c2.size()) *
              plan->rule.widths.strength_bits;
     };
-    outcome.halo_bits = plan->words.halo_bits;
-    outcome.table_bits = bits(plan->rule.force) + (plan->rule.damped ? bits(plan->rule.damp) : 0);
+    if (plan->program == nullptr) {
+      outcome.halo_bits = plan->words.halo_bits;
+      outcome.table_bits = bits(plan->rule.force) + (plan->rule.damped ? bits(plan->rule.damp) : 0);
+    }
   }
   outcome.cost = cost_of(c);
   compare_forces(c, plan ? &*plan : nullptr, own, outcome);

@@ -9,7 +9,10 @@
 
 #include "emu/lattice/run.h"
 #include "hw/engine_kind.h"
+#include "hw/scene_engine.h"
 #include "model/analysis/strain.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/rounds_run.h"
 #include "study/gpu_program.h"
 
 namespace cuboct::study {
@@ -38,6 +41,7 @@ bool among(const std::vector<uint64_t>& ascending, uint64_t sample) {
 Run run_engine(const Scene& scene, const EngineKind& kind, const RunRequest& request, uint64_t per_sample,
                const std::function<void(uint64_t sample, const RunState&)>& see) {
   cuboct::RunRequest asked;
+  asked.integers = kind.fixed;
   asked.steps = request.until * per_sample;
   for (uint64_t step = 0; step <= asked.steps; step += per_sample) asked.frames.push_back(step);
   if (request.curves || request.energies) asked.probes = asked.frames;
@@ -65,7 +69,8 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   options.precision = settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   options.threads = request.threads;
   const Body start = started_body(scene, settings.integrator == Integrator::semi_implicit_euler);
-  const EngineKind kind = reference_kind(scene, start, options, 1);
+  const EngineKind kind = rounds_of(scene.rule) != nullptr ? rounds_kind(scene, start, options, 1)
+                                                           : reference_kind(scene, start, options, 1);
   std::vector<Body> kept;
   std::vector<Vec3> last;
   Run run = run_engine(scene, kind, request, per_sample, [&](uint64_t sample, const RunState& frame) {
@@ -96,7 +101,7 @@ void add_momenta(const Scene& scene, const FixedRule& rule, const Int3& before, 
 
 Run run_fixed(Scene scene, const Arch& arch, const RunRequest& request, uint64_t per_sample) {
   scene.body = started_body(scene, true);
-  const Plan plan = plan_of(scene, arch);
+  const Plan plan = lattice_plan(scene, arch);
   emu::LatticeChoice choice;
   choice.engine.threads = request.threads;
   std::vector<Body> kept;
@@ -163,6 +168,8 @@ Run run_on_gpu(const Case& c, const Scene& scene, const RunRequest& request, uin
 }
 
 }  // namespace
+
+Plan lattice_plan(const Scene& scene, const Arch& arch) { return shared_plan_of(scene, arch, {"lattice"}); }
 
 Body started_body(const Scene& scene, bool half_step_back) {
   Body body = scene.body;

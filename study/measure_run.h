@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hw/plan.h"
 #include "model/trace/trace.h"
 #include "study/interrupted.h"
 #include "study/settings.h"
@@ -36,6 +37,9 @@ struct Run {
 // positions, v(0) of the scene is taken back by a(0) dt/2. Without that, trajectories would part in first
 // order of dt however good the method.
 Body started_body(const Scene& scene, bool half_step_back);
+
+// In integers, of a rule that is text too. InputError for other rules of rounds.
+Plan lattice_plan(const Scene& scene, const Arch& arch);
 
 // Heeds model/base/interrupt.h: throws Interrupted. Throws InputError where the settings make no plan.
 // Velocities of kept bodies are those of the engine: half a step earlier than positions in semi-implicit

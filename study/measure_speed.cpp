@@ -8,8 +8,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "emu/lattice/engine.h"
-#include "hw/setup.h"
+#include "emu/lattice/run.h"
+#include "hw/engine_kind.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "study/gpu_program.h"
@@ -29,7 +29,7 @@ class Stepper {
     const bool fixed = c_.settings.arithmetic == Arithmetic::fixed;
     const bool half = c_.settings.integrator == Integrator::semi_implicit_euler;
     c_.scene.body = started_body(c_.scene, half);
-    if (fixed) plan_.emplace(plan_of(c_.scene, c_.arch));
+    if (fixed) plan_.emplace(lattice_plan(c_.scene, c_.arch));
     begin();
   }
 
@@ -38,6 +38,12 @@ class Stepper {
     if (plan_) {
       emu::LatticeOptions options;
       options.threads = c_.settings.threads;
+      if (plan_->program) {
+        std::shared_ptr<IntegerEngine> engine =
+            emu::integer_lattice(*plan_, begin_of(c_.scene, *plan_, nullptr), options);
+        step_ = [engine] { engine->advance(1, nullptr); };
+        return;
+      }
       auto engine = std::make_shared<emu::LatticeEngine>(
           *plan_, 0, plan_->particles,
           [&](uint32_t id) {

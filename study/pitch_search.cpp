@@ -18,6 +18,7 @@
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/json.h"
+#include "model/rules/rounds_rule.h"
 #include "model/trace/trace_head.h"
 #include "study/kept_lines.h"
 #include "study/probe_run.h"
@@ -156,6 +157,27 @@ double within_90(size_t freedom) {
   return kQuantiles[std::min(freedom, std::size(kQuantiles)) - 1];
 }
 
+// Of matter that stays the same the reach grows with the pitch, and so does the stiffness of a particle.
+void check_rule(const ConfigValue& rule, const Base& base) {
+  const Packings packings(base);
+  const auto per_pitch = [&](double pitch) {
+    const Scene scene = resolve(base, packings.at(pitch, 0)).scene;
+    const RoundsRule* rounds = rounds_of(scene.rule);  // none: the text is a pair law
+    const double stiffness = rounds != nullptr ? rounds->stiffness() : -scene.rule.law->slope(pitch);
+    return std::pair{scene.rule.cutoff() / pitch, stiffness / pitch};
+  };
+  const double pitch = packings.first(), finer = std::stod(written(kFiner * pitch));
+  const auto [reach, stiffness] = per_pitch(pitch);
+  const auto [fine_reach, fine_stiffness] = per_pitch(finer);
+  const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-9 * std::abs(a); };
+  if (differ(reach, fine_reach))
+    rule.fail("the rule's reach does not grow with the pitch: another pitch makes another matter",
+              "reach = \"1.2 * pitch\"");
+  if (differ(stiffness, fine_stiffness))
+    rule.fail("the rule's stiffness does not grow with the pitch: another pitch makes another matter",
+              "formulas with 'pitch' or 'volume'");
+}
+
 }  // namespace
 
 void check_refinable(const Base& base) {
@@ -175,7 +197,10 @@ void check_refinable(const Base& base) {
   if (const std::vector<ConfigTable> listed = root.tables("particle"); !listed.empty())
     listed.front().fail("a particle has the mass of one pitch", "a shape of a material of its own");
   check_mass(root);
-  check_law(root.at("law").table());
+  if (const auto rule = root.find("rule"))
+    check_rule(*rule, base);
+  else
+    check_law(root.at("law").table());
   for (const ConfigTable& bond : root.tables("bond"))
     if (const auto law = bond.table_at("law")) check_law(*law);
   for (const ConfigTable& material : root.tables("material")) check_mass(material);

@@ -6,8 +6,10 @@
 #include "emu/lattice/run.h"
 #include "hw/engine_kind.h"
 #include "model/base/steps.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/rounds_run.h"
 #include "model/run/static_engine.h"
-#include "study/interrupted.h"
+#include "study/measure_run.h"
 
 namespace cuboct::study {
 
@@ -26,9 +28,10 @@ Trace probe_run(const Scene& scene, const Arch& arch, const std::string& engine,
   } else if (engine == "reference") {
     RealOptions real;
     real.threads = threads;
-    kind = reference_kind(scene, scene.body, real, cell);
+    kind = rounds_of(scene.rule) != nullptr ? rounds_kind(scene, scene.body, real, cell)
+                                            : reference_kind(scene, scene.body, real, cell);
   } else {
-    plan = plan_of(scene, arch);
+    plan = lattice_plan(scene, arch);
     emu::LatticeChoice choice;
     choice.engine.threads = threads;
     kind = emu::lattice_kind(scene, *plan, choice);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "model/base/interrupt.h"
+#include "model/rules/rounds_rule.h"
 #include "study/measure_run.h"
 
 namespace cuboct::study {
@@ -43,8 +44,10 @@ std::vector<double> separation(const Case& c, const TimeGrid& grid, int threads)
   const uint64_t per_sample = grid.steps_per_sample(scene.rule.dt);
   scene.rule.dt = grid.fitted(scene.rule.dt);
   const RealOptions options{.integrator = Integrator::velocity_verlet, .threads = threads};
-  Reference one(scene.rule, scene.body, scene.periodic, options);
-  Reference other(scene.rule, neighbour_of(scene), scene.periodic, options);
+  const auto run = [&](const Body& body) {
+    return Reference(scene.rule, with_bonds(scene.rule, body, scene.body), scene.periodic, options);
+  };
+  Reference one = run(scene.body), other = run(neighbour_of(scene));
   std::vector<double> distance;
   for (uint64_t sample = 0; sample <= grid.samples; ++sample) {
     for (uint64_t k = 0; sample > 0 && k < per_sample; ++k) {

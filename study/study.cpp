@@ -10,6 +10,7 @@
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/spelling.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/file_kind.h"
 #include "study/axes.h"
 #include "study/changed_base.h"
@@ -42,6 +43,8 @@ void read_figures(const ConfigTable& root, const Scene& scene, Study& study) {
 
 // The times at which runs are looked at. Half of the default step is the shortest time between two.
 void read_grid(const ConfigTable& root, const Scene& scene, Study& study) {
+  if (const RoundsRule* rounds = rounds_of(scene.rule); rounds && rounds->declaration().noise)
+    root.at("scene").fail("the scene's rule draws noise in each step: another time step is another run");
   const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
   if (scene.steps == 0) root.at("scene").fail("the scene has no steps");
   const uint64_t from_scene = scene.probe_every > 0 ? scene.steps / scene.probe_every : 100;
@@ -96,7 +99,9 @@ void read_points(const ConfigTable& root, Study& study) {
 }
 
 // What is sought is the least hardware (cost.h), and a GPU has its own.
-void read_search(const ConfigTable& table, Study& study) {
+void read_search(const ConfigTable& table, const Scene& scene, Study& study) {
+  if (rounds_of(scene.rule) != nullptr)
+    table.fail("a search is for the least hardware, and no machine runs a rule of rounds yet");
   study.search = read_axes(table, study.base);
   for (const Axis& axis : study.search)
     for (const auto& set : axis.sets) {
@@ -164,7 +169,7 @@ Study study_of(const ConfigTable& root, const std::string& path) {
   Study study = read_study_frame(root, path);
   read_speed_settings(root, study);
   read_points(root, study);
-  if (const auto search = root.table_at("search")) read_search(*search, study);
+  if (const auto search = root.table_at("search")) read_search(*search, resolve(study.base, {}).scene, study);
   if (study.points.empty() && study.search.empty())
     root.fail("a study without points", "add a [[sweep]] or a [search]");
   root.done();

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "model/base/error.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/config.h"
 #include "model/solid/dynamical_matrix.h"
 #include "study/measure_run.h"
@@ -92,7 +93,7 @@ double change_between(const std::vector<double>& a, const std::vector<double>& b
 }
 
 double largest_frequency_of(const Scene& scene) {
-  if (!(scene.pitch > 0)) return 0;
+  if (!(scene.pitch > 0) || rounds_of(scene.rule) != nullptr) return 0;
   return largest_frequency(scene.rule, scene.pitch);
 }
 
@@ -158,7 +159,8 @@ bool is_cut_for_speed(const Base& base) {
 
 void lengthen(const Study& study, const Case& c, int threads, Truth& truth) {
   if (!is_cut_for_speed(study.base)) {
-    truth.notes.push_back("the cutoff is a part of this law: it is not lengthened");
+    truth.notes.push_back(fmt::format("the cutoff is a part of this {}: it is not lengthened",
+                                      rounds_of(c.scene.rule) != nullptr ? "rule" : "law"));
     return;
   }
   if (study.figures.empty()) return;

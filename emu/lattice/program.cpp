@@ -37,9 +37,7 @@ class LatticeProgram : public EngineProgram {
 
   bool prepare(ProgramOptions&) override {
     choice_.engine.quiescence = !no_quiescence_;
-    choice_.engine.rule_code = rule_code_ == "compiled"      ? RuleCode::compiled
-                               : rule_code_ == "interpreted" ? RuleCode::interpreted
-                                                             : RuleCode::automatic;
+    choice_.engine.rule_code = rule_code_of(rule_code_);
     // Blocks of this size go back to the system when they are freed, as a body of millions does.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
     return false;

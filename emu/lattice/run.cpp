@@ -196,6 +196,17 @@ class IntegerRunner : public IntegerEngine {
 
 }  // namespace
 
+RuleCode rule_code_of(const std::string& name) {
+  return name == "compiled"      ? RuleCode::compiled
+         : name == "interpreted" ? RuleCode::interpreted
+                                 : RuleCode::automatic;
+}
+
+std::unique_ptr<IntegerEngine> integer_lattice(const Plan& plan, const State& from,
+                                               const LatticeOptions& options) {
+  return std::make_unique<IntegerRunner>(plan, from, options);
+}
+
 EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoice& choice) {
   EngineKind kind = fixed_kind("lattice", scene, plan);
   kind.threads = readers(choice.engine);
@@ -205,9 +216,8 @@ EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoic
     kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool cycles) {
       if (cycles)
         throw InputError("the timing model counts no cycles of a rule of text").about({"rule.file", "rule"});
-      return integer_run(scene, plan, from, [&](const State& state) {
-        return std::make_unique<IntegerRunner>(plan, state, choice.engine);
-      });
+      return integer_run(scene, plan, from,
+                         [&](const State& state) { return integer_lattice(plan, state, choice.engine); });
     };
     return kind;
   }

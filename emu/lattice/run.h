@@ -3,8 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <string>
 
 #include "emu/lattice/engine.h"
+#include "model/run/integer_engine.h"
 #include "model/run/record.h"
 #include "model/scene/scene.h"
 
@@ -22,6 +25,13 @@ struct LatticeChoice {
 // `plan` is the scene's. The engine loses its state in a step that fails. References are kept.
 // Counters of the trace: cycles where they are counted, list_builds, node_steps, quiet_node_steps, threads.
 EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoice& choice);
+
+// Of its name; an empty one: automatic.
+RuleCode rule_code_of(const std::string& name);
+
+// A rule that is text, from a state of the plan.
+std::unique_ptr<IntegerEngine> integer_lattice(const Plan& plan, const State& from,
+                                               const LatticeOptions& options);
 
 // A whole run.
 struct LatticeRun : RunRequest {

@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "model/base/interrupt.h"
+#include "model/real/rounds_engine.h"
+#include "model/scene/rule_cell.h"
 
 namespace cuboct {
 namespace {
@@ -17,6 +19,7 @@ constexpr double kMargin = 0.1;
 // A particle is at rest where its force would move it, against the stiffest site, by this part of the cutoff.
 constexpr double kAtRest = 1e-12;
 constexpr double kLongestStep = 0.02;  // of the cutoff
+constexpr double kUsualStrain = 1e-6;
 
 }  // namespace
 
@@ -24,36 +27,57 @@ StrainedCell::StrainedCell(const Rule& rule, CrystalCell cell, int threads)
     : rule_(rule), cell_(std::move(cell)), threads_(threads) {
   rule_.damping.coefficient = 0;
   for (ParticleType& type : rule_.types) type.pd = false;  // of the pairs alone
+  const RoundsRule* rounds = rounds_of(rule_);
+  if (rounds != nullptr) refuse_cell(rule_);
+  range_ = (reaches_of(rule_) + kMargin) * rule_.cutoff();
+  lasting_ = has_reference_bonds(rule_);
+  if (lasting_ && !cell_.packed) cell_.packed = std::make_shared<const CrystalCell>(cell_);
   gather();
-  stiffness_ = largest_site_stiffness(rule_, body_, {});
+  stiffness_ = rounds == nullptr ? largest_site_stiffness(rule_, body_, {}) : rounds->stiffness();
 }
 
 void StrainedCell::gather() {
-  images_ = images_of(cell_, (1 + kMargin) * rule_.cutoff());
+  images_ = images_of(lasting_ ? *cell_.packed : cell_, range_);
   body_.type = cell_.type;
   for (const CellImage& image : images_) body_.type.push_back(cell_.type[image.owner]);
   body_.x.resize(body_.type.size());
   body_.v.assign(body_.type.size(), Vec3::Zero());
   gathered_.clear();
   reference_.reset();
+  rounds_.reset();
   place();
 }
 
-void StrainedCell::place() {
-  const size_t own = cell_.x.size();
-  for (size_t i = 0; i < own; ++i) body_.x[i] = cell_.x[i];
+void StrainedCell::places(const CrystalCell& cell, std::vector<Vec3>& to) const {
+  const size_t own = cell.x.size();
+  for (size_t i = 0; i < own; ++i) to[i] = cell.x[i];
   for (size_t i = 0; i < images_.size(); ++i)
-    body_.x[own + i] = cell_.x[images_[i].owner] + cell_.vectors * images_[i].shift;
-  if (gathered_.empty()) {
-    gathered_ = body_.x;
-    reference_.emplace(rule_, body_, Periodic{}, RealOptions{.threads = threads_});
+    to[own + i] = cell.x[images_[i].owner] + cell.vectors * images_[i].shift;
+}
+
+void StrainedCell::make_engine() {
+  const RealOptions options{.threads = threads_};
+  if (rounds_of(rule_) == nullptr) {
+    reference_.emplace(rule_, body_, Periodic{}, options);
     return;
   }
+  Body packed = body_;
+  if (lasting_) places(*cell_.packed, packed.x);
+  rounds_ = make_rounds_engine(rule_, with_bonds(rule_, body_, packed), Periodic{}, options);
+}
+
+void StrainedCell::place() {
+  places(cell_, body_.x);
+  if (gathered_.empty()) {
+    gathered_ = body_.x;
+    return make_engine();
+  }
+  if (lasting_) return rounds_->place(body_, 0);
   // Half the margin for each end of a pair.
   const double most = kMargin / 2 * rule_.cutoff();
   for (size_t i = 0; i < body_.size(); ++i)
     if ((body_.x[i] - gathered_[i]).squaredNorm() > most * most) return gather();
-  reference_->place(body_);
+  rounds_ ? rounds_->place(body_, 0) : reference_->place(body_);
 }
 
 void StrainedCell::deform(const Mat3& deformation) {
@@ -72,7 +96,8 @@ uint64_t StrainedCell::relax(uint64_t most) {
                                    if (interrupted()) throw std::runtime_error("interrupted");
                                    Flat(cell_.x[0].data(), own) = at;
                                    place();
-                                   std::vector<Vec3> forces = reference_->forces();
+                                   std::vector<Vec3> forces =
+                                       rounds_ ? rounds_->forces() : reference_->forces();
                                    f = Flat(forces[0].data(), own);
                                    left = f.cwiseAbs().maxCoeff();
                                    return left <= small;
@@ -87,8 +112,13 @@ uint64_t StrainedCell::relax(uint64_t most) {
 }
 
 Mat3 StrainedCell::stress() const {
-  const std::vector<Mat3> all = reference_->virial_stress(cell_.volume());
   Mat3 sum = Mat3::Zero();
+  if (rounds_) {
+    const RoundsTerms& terms = *rounds_->terms();
+    for (size_t i = 0; i < cell_.x.size(); ++i) sum += terms.stress(i, cell_.volume());
+    return sum;
+  }
+  const std::vector<Mat3> all = reference_->virial_stress(cell_.volume());
   for (size_t i = 0; i < cell_.x.size(); ++i) sum += all[i];
   return sum;
 }
@@ -115,6 +145,15 @@ Matrix6 constants_by_strain(const Rule& rule, const CrystalCell& cell, double st
   return out;
 }
 
+ElasticTensor tensor_of(const Rule& rule, const CrystalCell& cell, double strain, int threads,
+                        uint64_t& evaluations) {
+  if (rounds_of(rule) == nullptr) return elastic_tensor(rule, cell);
+  ElasticTensor tensor;
+  tensor.stress = StrainedCell(rule, cell, threads).stress();
+  tensor.c = constants_by_strain(rule, cell, strain, threads, evaluations);
+  return tensor;
+}
+
 CrystalCell without_stress(const Rule& rule, const CrystalCell& cell, int threads) {
   constexpr int kMostRounds = 50;
   constexpr double kSmall = 1e-10;   // of the largest constant
@@ -122,7 +161,8 @@ CrystalCell without_stress(const Rule& rule, const CrystalCell& cell, int thread
   StrainedCell strained(rule, cell, threads);
   for (int round = 0; round < kMostRounds; ++round) {
     strained.relax();
-    const ElasticTensor tensor = elastic_tensor(rule, strained.cell());
+    uint64_t evaluations = 0;
+    const ElasticTensor tensor = tensor_of(rule, strained.cell(), kUsualStrain, threads, evaluations);
     Eigen::Matrix<double, 6, 1> stress;
     Matrix6 c = tensor.c;
     for (int v = 0; v < 6; ++v) {

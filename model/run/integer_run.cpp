@@ -21,9 +21,18 @@ double real_of(const FieldScale& scale, int64_t number) {
   return std::ldexp(scale.unit * static_cast<double>(number), -scale.frac);
 }
 
-State state_with_fields(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step) {
+std::unique_ptr<IntegerEngine> made(const ProgramSetting& setting, const State& state,
+                                    const MakeIntegerEngine& make) {
+  if (make) return make(state);
+  return std::make_unique<GoldenIntegers>(setting.program.program, setting.lattice, setting.capacity, state,
+                                          setting.program.rows);
+}
+
+}  // namespace
+
+State program_beginning(const Scene& scene, const ProgramSetting& setting) {
+  const Body body = with_bonds(scene.rule, scene.body, scene.body);
   State state = to_fixed(body, setting.fixed, setting.lattice, setting.origin);
-  state.step = step;
   const ProgramStart start = starts_of(text_of(scene), scene.rule, body, scene.periodic);
   const IntegerProgram& program = setting.program;
   for (const Particle& particle : state.particles)
@@ -40,21 +49,10 @@ State state_with_fields(const Scene& scene, const Body& body, const ProgramSetti
   return state;
 }
 
-std::unique_ptr<IntegerEngine> made(const ProgramSetting& setting, const State& state,
-                                    const MakeIntegerEngine& make) {
-  if (make) return make(state);
-  return std::make_unique<GoldenIntegers>(setting.program.program, setting.lattice, setting.capacity, state,
-                                          setting.program.rows);
-}
-
-}  // namespace
-
-IntegerRun::IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step,
-                       const MakeIntegerEngine& make)
-    : RoundsRun(scene, body, {.on_demand = true}, setting.fixed.cell_edge, step),
-      setting_(setting),
-      program_(made(setting, state_with_fields(scene, body_, setting, step), make)) {
-  stale_ = true;
+std::vector<uint64_t> program_memory(const State& state) {
+  std::vector<uint64_t> numbers(state.fields.begin(), state.fields.end());
+  numbers.insert(numbers.end(), state.bonds.begin(), state.bonds.end());
+  return numbers;
 }
 
 IntegerRun::IntegerRun(const Scene& scene, const ProgramSetting& setting, const State& from,
@@ -86,19 +84,14 @@ void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   };
   try {
     program_->advance(steps, hashes);
-  } catch (const RunError&) {
+  } catch (...) {
     look();
     throw;
   }
   look();
 }
 
-EngineMemory IntegerRun::memory() {
-  const State state = program_->state();
-  std::vector<uint64_t> numbers(state.fields.begin(), state.fields.end());
-  numbers.insert(numbers.end(), state.bonds.begin(), state.bonds.end());
-  return {{}, std::move(numbers)};
-}
+EngineMemory IntegerRun::memory() { return {{}, program_memory(program_->state())}; }
 
 Momentum IntegerRun::momentum() {
   return {cuboct::momentum(setting_.fixed, program_->state()), RoundsRun::momentum().real};

@@ -20,11 +20,8 @@ struct ProgramSetting {
 
 class IntegerRun final : public RoundsRun {
  public:
-  // Golden, where `make` is empty. Throws as that does. `step`: of `body`, which has what the rule's fields
-  // kept.
-  IntegerRun(const Scene& scene, const Body& body, const ProgramSetting& setting, uint64_t step = 0,
-             const MakeIntegerEngine& make = {});
-  // Goes on from a state as for_each_slot and memory() left it.
+  // Golden, where `make` is empty. Throws as that does. From the rule's beginning, or a state as
+  // for_each_slot and memory() left it.
   IntegerRun(const Scene& scene, const ProgramSetting& setting, const State& from,
              const MakeIntegerEngine& make = {});
 
@@ -54,6 +51,10 @@ class IntegerRun final : public RoundsRun {
   std::unique_ptr<IntegerEngine> program_;
 };
 
+// The scene's body in integers, with the rule's fields as they begin, or as Body::bonds kept them.
+State program_beginning(const Scene& scene, const ProgramSetting& setting);
+// What a checkpoint keeps of a state besides its particles: EngineMemory::own.
+std::vector<uint64_t> program_memory(const State& state);
 // The state that a checkpoint holds: `particles` in the order of their slots, `memory` as IntegerRun left it.
 State state_of_checkpoint(State particles, const IntegerProgram& program,
                           const std::vector<uint64_t>& memory);

@@ -155,6 +155,7 @@ std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
   std::vector<std::pair<std::string, std::vector<double>>> fields;
   const std::vector<RuleField>& names = rounds_of(scene_.rule)->declaration().shown;
   std::vector<std::vector<double>> values;
+  body();
   if (!names.empty()) values = engine_->terms()->shown();
   for (size_t k = 0; k < names.size(); ++k) fields.emplace_back(names[k].name, std::move(values[k]));
   if (breaks() && std::ranges::none_of(names, [](const RuleField& f) { return f.name == "damage"; }))

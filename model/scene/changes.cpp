@@ -116,7 +116,9 @@ std::string without(std::string text, const toml::table& table, const std::strin
   if (table.is_inline())
     throw InputError(
         fmt::format("{}: '{}' stands in an inline table and cannot be taken out", path, change.key));
-  const size_t begin = byte_at(text, found->first.source().begin);
+  // The key's line begins with the names of its tables where it is dotted.
+  const size_t before = text.rfind('\n', byte_at(text, found->first.source().begin));
+  const size_t begin = before == std::string::npos ? 0 : before + 1;
   return text.erase(begin, line_end(text, byte_at(text, found->second.source().end)) - begin);
 }
 

@@ -10,6 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/contract/law.h"
+#include "model/rules/no_rest.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/file_kind.h"
 #include "model/scene/readings.h"
@@ -229,15 +230,8 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
 void check_static_rule(const ConfigTable& root, const Rule& rule) {
   const RoundsRule* rounds = rounds_of(rule);
   if (rounds == nullptr) return;
-  const RuleDeclaration& declaration = rounds->declaration();
-  const ConfigValue at = root.at("rule");
-  if (!declaration.moves) at.fail("static loading brings particles to rest, and the rule moves none");
-  if (!declaration.kept.empty())
-    at.fail(fmt::format("static loading leaves out time, and the rule's field '{}' goes on with it",
-                        declaration.kept.front()));
-  if (declaration.noise) at.fail("static loading leaves out time, and the rule draws noise in each step");
-  if (!(rounds->stiffness() > 0))
-    at.fail("static loading needs the stiffness of the rule", "stiffness = \"...\" in N/m, among its keys");
+  if (const auto why = why_no_rest(*rounds))
+    root.at("rule").fail("static loading leaves out time, and " + why->what, why->hint);
 }
 
 void read_reach(const ConfigTable& root, Scene& scene) {

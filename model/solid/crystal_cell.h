@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "model/contract/bond.h"
@@ -16,6 +17,8 @@ struct CrystalCell {
   std::array<bool, 3> repeats{true, true, true};
   std::vector<Vec3> x;        // m
   std::vector<uint8_t> type;  // index into Rule::types
+  // In which bonds that last were made; null: as it stands.
+  std::shared_ptr<const CrystalCell> packed = nullptr;
 
   double volume() const;  // m^3
   // The same particles and vectors under x -> deformation * x.

@@ -28,6 +28,7 @@ class Frame:
     positions: NDArray[np.float64]  # (particles, 3), m
     velocities: NDArray[np.float64]  # (particles, 3), m/s, half a step before the positions
     types: NDArray[np.uint8]  # (particles,)
+    fields: dict[str, NDArray[np.float64]] = field(default_factory=dict)  # what the scene's [rule] shows, by name: (particles,) or (particles, 3)
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,11 @@ class Run:
     def velocities(self) -> NDArray[np.float64]:
         """Of the last state, (particles, 3), m/s, half a step before the positions."""
         return self.frames[-1].velocities
+
+    @property
+    def fields(self) -> dict[str, NDArray[np.float64]]:
+        """Of the last state what the scene's [rule] shows, by name: (particles,), of vectors (particles, 3)."""
+        return self.frames[-1].fields
 
     def __repr__(self) -> str:
         return f"<cuboct.Run of {self.steps} steps, {self.engine} engine, hash {self.hash}>"
@@ -108,6 +114,7 @@ def run(
     ranks: int | None = None,
     precision: str | None = None,
     integrator: str | None = None,
+    rule_code: str | None = None,
     hash_every: int | None = None,
     cycles: bool = False,
     gpus: int | None = None,
@@ -125,7 +132,7 @@ def run(
     be done, with what there is in its `run`.
     """
     options = _given(
-        threads=threads, ranks=ranks, precision=precision, integrator=integrator, hash_every=hash_every,
+        threads=threads, ranks=ranks, precision=precision, integrator=integrator, rule_code=rule_code, hash_every=hash_every,
         gpus=gpus, devices=None if devices is None else list(devices), port=port, baud=baud,
     )  # fmt: skip
     options["cycles"] = bool(cycles)
@@ -162,10 +169,12 @@ def crosscheck(
     arch: ArchLike = None,
     steps: int | None = None,
     threads: int | None = None,
+    rule_code: str | None = None,
 ) -> Comparison:
     """Runs a scene in several engines of the fixed rule and compares every bit, and every cycle where two engines count them.
 
-    A scene of stages is compared stage by stage, each from the state in which all engines ended the one before. `stage`, `start`: as of `run`.
+    A scene of stages is compared stage by stage, each from the state in which all engines ended the one before. The other
+    arguments are as of `run`.
 
     >>> assert crosscheck("scenes/lj_block.toml", ["golden", "lattice"], steps=5)
     """
@@ -181,7 +190,7 @@ def crosscheck(
             if ended is not None and whole == ended:
                 continue
             leave = os.path.join(folder, str(k)) if k + 1 < len(names) else ""
-            found = _cuboct.crosscheck(source.at(name, begin), list(engines), _given(threads=threads), last, leave)
+            found = _cuboct.crosscheck(source.at(name, begin), list(engines), _given(threads=threads, rule_code=rule_code), last, leave)
             reached, stopped = found.pop("reached"), found.pop("stopped")
             one = Comparison(**found)
             text = f"stage {name}\n{one.text}" if len(names) > 1 else one.text

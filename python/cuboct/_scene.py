@@ -101,6 +101,8 @@ class Scene(_Tables):
             return value
 
         tables = {key: whole(key, value) for key, value in self.items()}
+        if isinstance(tables.get("rule"), str):
+            tables["rule"] = os.path.join(self._directory, tables["rule"])
         start = tables.get("start")
         if isinstance(start, dict) and isinstance(start.get("from"), str):
             start["from"] = os.path.join(self._directory, start["from"])

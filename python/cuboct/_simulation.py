@@ -67,8 +67,8 @@ class Simulation:
 
     `arch`: the machine, as a `cuboct.Arch`, a dict or a path. `threads`: as many as suit the scene, where None. `precision` ("double" or
     "float") and `integrator` ("euler" or "verlet") are of the reference. `probe_every`: steps between two readings of the probes and
-    energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free. `ranks`, `gpus`, `devices`, `port` and
-    `baud` are the command's options of that name.
+    energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free. `ranks`, `gpus`, `devices`, `port`,
+    `baud` and `rule_code` are the command's options of that name.
     """
 
     def __init__(
@@ -82,6 +82,7 @@ class Simulation:
         threads: int | None = None,
         precision: str | None = None,
         integrator: str | None = None,
+        rule_code: str | None = None,
         probe_every: int | None = None,
         ranks: int | None = None,
         gpus: int | None = None,
@@ -91,7 +92,7 @@ class Simulation:
         anyway: bool = False,
     ):
         options = _given(
-            threads=threads, precision=precision, integrator=integrator, ranks=ranks, gpus=gpus,
+            threads=threads, precision=precision, integrator=integrator, rule_code=rule_code, ranks=ranks, gpus=gpus,
             devices=None if devices is None else list(devices), port=port, baud=baud,
         )  # fmt: skip
         every = None if probe_every is None else _count(probe_every, "probe_every")

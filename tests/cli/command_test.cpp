@@ -134,6 +134,15 @@ TEST(Command, RefusesOptionsOfAnotherEngine) {
                  "--integrator is an option of the reference engine, not of golden\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "reference", "--precision", "half"},
                  "--precision: half not in {fixed,float,double}\n");
+  expect_refusal(
+      {"run", "scenes/rules/heat.toml", "--rule-code", "interpreted"},
+      "--rule-code interpreted is an option of the lattice and the gpu engine, not of reference\n");
+  expect_refusal(
+      {"crosscheck", "scenes/rules/heat.toml", "--engines", "golden,gpu", "--rule-code", "compiled"},
+      "--rule-code compiled is an option of the lattice engine, not of golden,gpu\n");
+  expect_refusal({"run", "scenes/lj_block.toml", "--rule-code", "compiled"},
+                 "--rule-code is of a [rule] of text with rounds of its own\n  hint: the pair law is "
+                 "compiled already\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stall-rate", "0.2"},
                  "--stall-rate is an option of the systemc and the rtl engine, not of lattice\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--resume"},

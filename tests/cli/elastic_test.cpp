@@ -2,6 +2,7 @@
 // `cuboct elastic` as a user meets it, and runs with static loading.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -57,6 +58,26 @@ TEST(Elastic, OfASceneTakesItsBox) {
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_NE(answer.out.find("cell                  the scene's box: 256 particles\n"), std::string::npos)
       << answer.out;
+}
+
+// K + 4G/3, K - 2G/3 and G of 72 GPa and 0.22, whatever cuts the scene begins with.
+TEST(Elastic, OfARuleOfTextIsItsClosedForm) {
+  const Answer answer = Bench(false).cuboct({"elastic", "scenes/rules/glass.toml"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  for (const char* line : {"left out              the scene's start of whole, hard: it asks where it is\n",
+                           "C11, C12, C44         82.2 GPa, 23.2 GPa, 29.5 GPa\n", "asymmetry over"})
+    EXPECT_NE(answer.out.find(line), std::string::npos) << line << "\n" << answer.out;
+  EXPECT_EQ(answer.out.find("lattice sums"), std::string::npos);
+  // Of stages the first; the other fields of the JSON are null.
+  const Answer yields = Bench(false).cuboct({"elastic", "scenes/rules/plastic.toml", "--json"});
+  ASSERT_EQ(yields.code, 0) << yields.err;
+  const Json found = Json::parse(yields.out);
+  EXPECT_NEAR(found["constants"][0][0].get<double>(), std::sqrt(2.0) * 1e6, 1);  // sqrt(2) spring/pitch
+  EXPECT_TRUE(found["born"].is_null() && found["difference"].is_null());
+  expect_refusal(
+      {"elastic", "scenes/rules/heat.toml"},
+      "scenes/rules/heat.toml:6:8: a cell at rest leaves out time, and the rule moves no particle\n"
+      "   6 | file = \"texts/heat.toml\"\n     |        ^\n");
 }
 
 TEST(Elastic, RefusesWrongInput) {

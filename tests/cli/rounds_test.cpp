@@ -79,6 +79,23 @@ TEST_F(RoundsTest, NoiseCountsOnFromRunToRun) {
   EXPECT_EQ(hash("lattice", "4", "b", "c"), hash("lattice", "15", "", "d"));
 }
 
+// No bit depends on how the rule's code runs; compiled code takes every step where it is asked for.
+TEST_F(RoundsTest, TheRulesCodeRunsAsAsked) {
+  std::vector<std::string> hashes;
+  for (const char* code : {"interpreted", "compiled"}) {
+    const Answer answer = bench_.cuboct({"run", "scenes/rules/heat.toml", "--engine", "lattice",
+                                         "--rule-code", code, "--steps", "5", "--json"});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    const nlohmann::json summary = nlohmann::json::parse(answer.out);
+    EXPECT_EQ(summary["compiled_steps"]["value"], std::string(code) == "compiled" ? 5 : 0);
+    hashes.push_back(summary["state_hash"]["value"]);
+    const Answer compared =
+        bench_.cuboct({"crosscheck", "scenes/rules/heat.toml", "--rule-code", code, "--steps", "3"});
+    EXPECT_EQ(compared.out, "matched 3840 updates over 3 steps in 2 engines\n") << compared.err;
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 // Stages and --from hand broken bonds on: what one stage broke the next one has.
 TEST_F(RoundsTest, StagesKeepWhatBroke) {
   const std::string path = scene(scene_with(kGlass + kBreaks, kPulled) +

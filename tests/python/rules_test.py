@@ -110,9 +110,6 @@ class Text(unittest.TestCase):
         simulation.step(40)
         self.assertEqual(simulation.fields["T"].shape, (simulation.particles,))
         self.assertAlmostEqual(simulation.fields["T"].mean(), 350, places=9)
-        with self.assertRaises(cuboct.InputError) as caught:
-            cuboct.Simulation(scene, "golden")
-        self.assertEqual(caught.exception.key, "rule.file")
 
 
 class Static(unittest.TestCase):

@@ -44,7 +44,16 @@ struct InIntegers {
     program = integer_program(*rounds_of(rule)->text(), fixed, capacity,
                               starts_of(*rounds_of(rule)->text(), rule, scene.body, scene.periodic));
   }
-  IntegerRun run() const { return {scene, scene.body, {program, fixed, lattice, origin, room}}; }
+  ProgramSetting setting() const { return {program, fixed, lattice, origin, room}; }
+  IntegerRun run() const { return {scene, setting(), program_beginning(scene, setting())}; }
+  // From where a run left its body, with what that kept.
+  IntegerRun run_from(const Body& body, uint64_t step) const {
+    Scene left = scene;
+    left.body = body;
+    State state = program_beginning(left, setting());
+    state.step = step;
+    return {scene, setting(), state};
+  }
 
   Scene scene;
   FixedRule fixed;

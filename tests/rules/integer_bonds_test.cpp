@@ -129,8 +129,7 @@ TEST(IntegerBonds, ARunInTwoPartsIsTheRunInOne) {
     const InIntegers made(text);
     IntegerRun whole = made.run(), first = made.run();
     whole.advance(60, nullptr), first.advance(35, nullptr);
-    IntegerRun second(made.scene, *first.saved_body(),
-                      {made.program, made.fixed, made.lattice, made.origin, made.room}, 35);
+    IntegerRun second = made.run_from(*first.saved_body(), 35);
     second.advance(25, nullptr);
     EXPECT_EQ(second.hash(), whole.hash());
     EXPECT_NE(first.hash(), whole.hash());

@@ -99,8 +99,7 @@ TEST(IntegerProgram, ARunInTwoPartsIsTheRunInOne) {
   const InIntegers made(text, 64);
   IntegerRun whole = made.run(), first = made.run();
   whole.advance(40, nullptr), first.advance(25, nullptr);
-  IntegerRun second(made.scene, *first.saved_body(),
-                    {made.program, made.fixed, made.lattice, made.origin, made.room}, 25);
+  IntegerRun second = made.run_from(*first.saved_body(), 25);
   EXPECT_EQ(second.hash(), first.hash());
   second.advance(15, nullptr);
   EXPECT_EQ(second.hash(), whole.hash());
