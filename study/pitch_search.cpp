@@ -35,6 +35,9 @@ void check_law(const ConfigTable& law) {
   if (const auto stiffness = law.find("stiffness"))
     stiffness->fail("'stiffness' is that of a bond of one pitch", "give 'youngs_modulus' and 'direction'");
   const ConfigValue kind = law.at("kind");
+  if (kind.string() == "rule")
+    kind.fail("another pitch may make another matter of a law that is text",
+              "[rule] in the place of [law]: its reach and stiffness are compared at two pitches");
   if (const std::string name = kind.string(); name == "spline" || name == "lj")
     kind.fail(fmt::format("a law '{}' has lengths of its own: another pitch makes another matter", name),
               "elastic, brittle, ductile or viscous, with 'youngs_modulus'");

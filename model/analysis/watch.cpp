@@ -399,14 +399,17 @@ void Watch::see_energy(const Moment& moment, const Motion& motion) {
       "the energy is off by {:.3g} J: {:.3g} of the largest kinetic energy, "
       "{:.3g} is to be expected; ",
       change, share, energy_limit_);
+  const auto of_pull = [&](double force, const char* whose) {
+    return pull_ > 0 ? fmt::format(", {:.2g} of {} strongest pull", force / pull_, whose) : std::string();
+  };
   if (jump_ > table_error_)
-    find(Failure::force_jump, moment, std::nullopt, share, energy_limit_,
-         what + fmt::format("the law's force jumps by {:.3g} N at its cutoff, {:.2g} of its strongest pull",
-                            jump_, jump_ / pull_));
+    find(
+        Failure::force_jump, moment, std::nullopt, share, energy_limit_,
+        what + fmt::format("the law's force jumps by {:.3g} N at its cutoff", jump_) + of_pull(jump_, "its"));
   else
     find(Failure::heating, moment, std::nullopt, share, energy_limit_,
-         what + fmt::format("the table's force is off by up to {:.3g} N, {:.2g} of the law's strongest pull",
-                            table_error_, table_error_ / pull_));
+         what + fmt::format("the table's force is off by up to {:.3g} N", table_error_) +
+             of_pull(table_error_, "the law's"));
 }
 
 void Watch::see_rest(const Moment& moment) {

@@ -122,8 +122,8 @@ class FunctionLaw final : public CoredLaw {
       : CoredLaw("function_law", core, cutoff), of_(std::move(of)), step_((cutoff - core) / kKnots) {
     for (int k = 0; k <= kKnots; ++k) {
       const double r = knot(k), f = of_->force(r);
-      if (!std::isfinite(f))
-        throw InputError(fmt::format("the force is no number at r = {:.6g} m", r),
+      if (!std::isfinite(f) || !std::isfinite(of_->slope(r)))
+        throw InputError(fmt::format("the force, or its slope, is no number at r = {:.6g} m", r),
                          "between 'core' and 'reach' it must be one everywhere");
       force_[static_cast<size_t>(k)] = f;
     }

@@ -100,7 +100,7 @@ void check_energy(const RuleText& text, const RuleProgram& program, const PairLa
     largest = std::max(largest, std::abs(law.force(law.core() + width * k / kSamples)));
   for (int k = 0; k < kSamples; ++k) {
     const double r = law.core() + width * (k + 0.5) / kSamples, slope = energy.slope(r), force = law.force(r);
-    if (std::abs(slope + force) > kMost * (largest + std::abs(force)))
+    if (!(std::abs(slope + force) <= kMost * (largest + std::abs(force))))
       text.pair_energy->fail(
           {0,
            fmt::format("at r = {:.6g} the energy falls by {:.6g} a length, and the force is {:.6g}", r,

@@ -19,6 +19,10 @@ constexpr const char* kReserved[] = {"d",     "r",         "d0",     "r0",      
                                      "mass",  "dt",        "pi",     "true",     "false",    "pitch",
                                      "reach", kForceField, "volume", "position", "velocity", "id"};
 
+constexpr const char* kOfPotential[] = {"pair",      "cutoff",      "lattice_constant",
+                                        "density",   "density_i",   "density_j",
+                                        "embedding", "embedding_i", "embedding_j"};
+
 int numbers_in(Kind kind) { return kind == Kind::vector ? 3 : 1; }
 
 class Understanding {
@@ -45,7 +49,8 @@ class Understanding {
     for (const auto& [name, parameter] : text_.parameters) names.insert(name);
     for (const auto& [name, let] : text_.lets) names.insert(name);
     for (const RuleText::Table& table : text_.tables)
-      if (!names.insert(table.name).second || is_function(table.name))
+      if (!names.insert(table.name).second || is_function(table.name) ||
+          (text_.potential && std::ranges::count(kOfPotential, table.name) > 0))
         table.fail(fmt::format("the name '{}' is taken", table.name), {});
     const auto add = [&](const std::vector<RuleText::Field>& from, std::vector<ProgramField>& to,
                          uint32_t& numbers) {

@@ -21,6 +21,8 @@ struct Slope {
 // By the chain rule. Truths are flat.
 Slope sloped(const RealNode& node, const Slope& a, const Slope& b, const Slope& c) {
   const double at = applied(node, a.at, b.at, c.at);
+  // What does not move there has no slope, however steep the operation: sqrt(max(0, ...)).
+  if (a.by == 0 && (node.op == RealOp::square_root || node.op == RealOp::power)) return {at, 0};
   switch (node.op) {
     case RealOp::add:
       return {at, a.by + b.by};

@@ -67,6 +67,7 @@ class RoundsEngine final : public RealEngine {
     x_ = body.x, v_ = body.v, steps_ = step;
     if (!u_.empty()) u_ = body.u;
     fresh_ = false;
+    kick_.clear();
   }
   std::vector<Vec3> forces() const override {
     refresh();
@@ -85,6 +86,7 @@ class RoundsEngine final : public RealEngine {
   void recall(const std::vector<uint64_t>& memory) override {
     terms_->recall(memory);
     fresh_ = false;
+    kick_.clear();
   }
 
  private:

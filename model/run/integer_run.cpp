@@ -126,7 +126,7 @@ void IntegerRun::renew() {
   if (!leads()) return;
   body_ = with_bonds(scene_.rule, to_real(state, setting_.fixed, setting_.lattice, setting_.origin), body_);
   const IntegerProgram& program = setting_.program;
-  std::vector<uint64_t> kept = engine_->terms()->memory();
+  std::vector<uint64_t> kept = engine_->kept_terms()->memory();
   auto to = kept.begin();
   // The numbers of a field, where it goes on: of the particles, or of the bonds, one number after another.
   const auto recall = [&](const ProgramField& field, const FieldScale& scale,

@@ -70,8 +70,8 @@ void check_packing(const ConfigValue& at, const Fcc& fcc, const Shape* shape, co
 
 // Before grains are drawn: those that this body cannot have.
 void check_grains(const GrainChoice& choice, const GrainDomain& domain, double pitch) {
-  constexpr double kLeastSize = 3;   // pitches: less has hardly an inner particle
-  constexpr double kLeastThick = 3;  // pitches: less is a layer, of which a turned crystal leaves scraps
+  constexpr double kLeastSize = 3;     // pitches: less has hardly an inner particle
+  constexpr double kLeastThick = 3;    // pitches: less is a layer, of which a turned crystal leaves scraps
   constexpr double kMostGrains = 1e6;  // half a minute
   const Grains& grains = choice.grains;
   const ConfigTable& table = choice.table;

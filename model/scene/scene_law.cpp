@@ -146,6 +146,13 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
 
 }  // namespace
 
+void relax_pitch(const ConfigValue& value, const PairLaw& law, PackingChoice& packing) {
+  if (packing.fcc.pitch > 0) return;
+  const double guess = stiffest_rest_distance(law);
+  if (!(guess > 0)) value.fail("\"relaxed\" needs a force that pushes, and pulls further out");
+  packing.fcc.pitch = placed(value, [&] { return relaxed_pitch(law, guess); });
+}
+
 void check_at_pitch(const ConfigValue& table, const PairLaw& law, double pitch, bool must_vanish) {
   if (law.cutoff() <= pitch)
     table.fail(
@@ -206,6 +213,7 @@ std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingC
     law = read_program_rule(table, packing, [&] {
             table.fail("a pair's law is a rule with 'core'", "without 'core' a rule is one of any force");
           }).law;
+    if (packing != nullptr) relax_pitch(table, *law, *packing);
   } else {
     if (packing != nullptr && packing->fcc.pitch == 0)
       table.fail(fmt::format("the law '{}' needs a given pitch, not \"relaxed\"", kind));

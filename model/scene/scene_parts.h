@@ -90,6 +90,8 @@ double stiffness_from_modulus(double modulus, const Vec3& direction, double pitc
 std::shared_ptr<const PairLaw> read_law(const ConfigTable& root, PackingChoice* packing);
 // A [law] table, or the `law` of a bond.
 std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingChoice* packing);
+// Sets the pitch where it was "relaxed": that without pressure, found from the law's rest distance.
+void relax_pitch(const ConfigValue& value, const PairLaw& law, PackingChoice& packing);
 // That a packing of this pitch may have the law. `must_vanish`: it is to be at rest.
 void check_at_pitch(const ConfigValue& value, const PairLaw& law, double pitch, bool must_vanish);
 // [rule], in the place of [law]: a rule of several rounds, which is made when the body is read, or a pair

@@ -22,11 +22,7 @@ void refuse_pairs(const ConfigTable& root) {
 
 RuleChoice pair_law_or_rounds(const ConfigValue& value, RuleChoice choice, PackingChoice* packing) {
   if (!choice.law || packing == nullptr) return choice;
-  if (packing->fcc.pitch == 0) {
-    const double guess = stiffest_rest_distance(*choice.law);
-    if (!(guess > 0)) value.fail("\"relaxed\" needs a force that pushes, and pulls further out");
-    packing->fcc.pitch = placed_at(value, [&] { return relaxed_pitch(*choice.law, guess); });
-  }
+  relax_pitch(value, *choice.law, *packing);
   check_at_pitch(value, *choice.law, packing->fcc.pitch, false);
   return choice;
 }

@@ -117,7 +117,7 @@ class Scene(_Tables):
         """Reads the scene as a run would, of stages the first or `stage`. InputError where it is wrong.
 
         `title`; `particles`; `dt` and `dt_limit` (the largest stable one, None where unknown) in s; `steps`; `cells`; `cell_edge` in m;
-        `nodes` of the machine (`cells` and `nodes` are None of a `[rule]`, for which no machine is built); `plan_hash`; `warnings`;
+        `nodes` of the machine (`cells` and `nodes` are None of a rule with rounds of its own, for which no machine is built); `plan_hash`; `warnings`;
         `engine`, which runs it where none is named; `stages`, their names.
         """
         with sources(self, arch) as source:

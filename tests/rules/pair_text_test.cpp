@@ -165,6 +165,25 @@ TEST(PairText, IsNoMoreThanAPairLaw) {
   EXPECT_TRUE(has(refusal(far), "not below 'reach'")) << refusal(far);
 }
 
+// Where the root is flat so is the force; an energy that is no number is not the force's.
+TEST(PairText, HasASlopeWhereARootEnds) {
+  const std::string head = "[rule]\nreach = \"8 angstrom\"\ncore = \"3 angstrom\"\n";
+  const std::string rest =
+      "[[rule.round]]\nsum.force = \"-1 N/m * reach * sqrt(max(0, 0.51 - r / reach)) * d / r\"\n";
+  const Scene scene = scene_of(head + rest, "5 angstrom");
+  EXPECT_EQ(scene.rule.law->slope(7e-10), 0);
+  EXPECT_LT(scene.rule.law->slope(4e-10), 0);
+  const std::string none =
+      refusal(head + "energy.pair = \"1 J * sqrt(min(r - 9 angstrom, 0 m) / reach)\"\n" + rest);
+  EXPECT_TRUE(has(none, "the energy falls by")) << none;
+}
+
+TEST(PairText, OfALawFindsThePitchWithoutPressure) {
+  const Scene law = scene_of(kLaw),
+              text = scene_of("[law]\nkind = \"rule\"\nfile = \"rules/texts/lj.toml\"\n");
+  EXPECT_EQ(law.pitch, text.pitch);
+}
+
 TEST(PairText, RefusesTablesThatAreNone) {
   const auto expect = [&](const std::string& table, const std::string& what) {
     const std::string said =
@@ -187,6 +206,11 @@ TEST(PairText, RefusesTablesThatAreNone) {
       "[rule]\nreach = \"8 angstrom\"\ntable.sqrt = { at = [0, 1], value = [0, 1] }\n"
       "[[rule.round]]\nsum.force = \"1 N/m * d\"\n";
   EXPECT_TRUE(has(refusal(taken), "the name 'sqrt' is taken")) << refusal(taken);
+  const std::string pair =
+      "[rule]\nreach = \"cutoff\"\npotential.file = \"rules/texts/copper.eam.alloy\"\n"
+      "table.pair = { at = [0, 1], value = [0, 1] }\n"
+      "[[rule.round]]\nsum.force = \"1 N/m * d\"\n";
+  EXPECT_TRUE(has(refusal(pair), "the name 'pair' is taken")) << refusal(pair);
 }
 
 }  // namespace
