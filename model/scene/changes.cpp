@@ -110,16 +110,20 @@ std::string with_added(std::string text, const toml::table& table, bool is_root,
   return text.insert(header, (open ? "\n" : "") + line + "\n");
 }
 
-std::string without(std::string text, const toml::table& table, const std::string& key, const Change& change,
-                    const std::string& path) {
+// What stands before the key, or before the names of its tables where it is dotted, is the end of a line, or
+// of an inline table the brace or the comma.
+std::string without(std::string text, const toml::table& table, const std::string& key) {
   const auto found = table.find(key);
-  if (table.is_inline())
-    throw InputError(
-        fmt::format("{}: '{}' stands in an inline table and cannot be taken out", path, change.key));
-  // The key's line begins with the names of its tables where it is dotted.
-  const size_t before = text.rfind('\n', byte_at(text, found->first.source().begin));
-  const size_t begin = before == std::string::npos ? 0 : before + 1;
-  return text.erase(begin, line_end(text, byte_at(text, found->second.source().end)) - begin);
+  const size_t at = byte_at(text, found->first.source().begin);
+  const size_t end = byte_at(text, found->second.source().end);
+  const size_t before = at == 0 ? std::string::npos : text.find_last_of("\n{,", at - 1);
+  if (before == std::string::npos || text[before] == '\n') {
+    const size_t begin = before == std::string::npos ? 0 : before + 1;
+    return text.erase(begin, line_end(text, end) - begin);
+  }
+  if (text[before] == ',') return text.erase(before, end - before);
+  const size_t next = text.find_first_not_of(" \t", end);
+  return text.erase(before + 1, (text[next] == ',' ? next + 1 : end) - before - 1);
 }
 
 std::string with_change(std::string text, const std::string& path, const Change& change) {
@@ -150,7 +154,7 @@ std::string with_change(std::string text, const std::string& path, const Change&
     if (!node->is_table())
       throw InputError(
           fmt::format("{}: '{}' is an element of an array and cannot be taken out", path, change.key));
-    return without(std::move(text), *node->as_table(), parts.back(), change, path);
+    return without(std::move(text), *node->as_table(), parts.back());
   }
   const size_t begin = byte_at(text, value->source().begin), end = byte_at(text, value->source().end);
   return text.replace(begin, end - begin, change.value);
