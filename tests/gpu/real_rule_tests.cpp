@@ -327,7 +327,8 @@ std::string refusal(std::shared_ptr<const PairLaw> law) {
 
 TEST(RealRule, RefusesWhatItCannotHold) {
   EXPECT_EQ(refusal<float>(std::make_shared<FormlessLaw>()),
-            "the pair law has no closed form, which the real-number GPU engine needs");
+            "the pair law has no closed form, which floats and doubles on a GPU need\n"
+            "  hint: precision fixed runs it; so do floats where the force is one table's value at r");
   const auto hard = lennard_jones(1, 1, 2.5, 1e-5);
   EXPECT_EQ(refusal<float>(hard),
             "the pair law's force at its core, 1e-05 m, is beyond the range of a float\n"

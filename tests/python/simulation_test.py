@@ -83,6 +83,7 @@ class State(unittest.TestCase):
     def test_curves_are_those_of_a_run(self):
         scene = cuboct.Scene.load(scene_file("coupon.toml"))
         scene["run"]["probe_every"] = 20
+        scene["run"]["energy_every"] = 100
         run = cuboct.run(scene, steps=100)
         simulation = cuboct.Simulation(scene)
         for _ in range(4):
