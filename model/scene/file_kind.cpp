@@ -67,7 +67,8 @@ const std::vector<Row>& kinds() {
       {FileKind::arch,
        "an arch file",
        "--arch {} gives it to a scene",
-       {{"node", "link", "widths", "table", "plan"}}}};
+       {{"node", "link", "widths", "table", "plan"}},
+       {"round"}}};
   return rows;
 }
 

@@ -198,7 +198,7 @@ void read_values(const ConfigTable& table, RuleText& text) {
   if (const auto tables = names_at(table, "table"))
     for (const std::string& name : tables->names()) {
       const ConfigTable one = tables->at(name).table();
-      one.record_as("rule");
+      one.record_as("table");
       text.tables.push_back(table_of(one));
     }
 
