@@ -102,7 +102,8 @@ std::set<std::string> scene_keys() {
       std::filesystem::temp_directory_path() / fmt::format("cuboct_docs_test_{}.toml", getpid());
   std::set<std::string> keys;
   record_config_keys(&keys);
-  for (const char* name : {"rules/heat.toml", "rules/glass.toml", "rules/copper.toml", "templates/rule.toml"})
+  for (const char* name :
+       {"rules/heat.toml", "rules/pair.toml", "rules/glass.toml", "rules/copper.toml", "templates/rule.toml"})
     read_scene(kRoot + "/scenes/" + name);
   for (const auto& entry : std::filesystem::directory_iterator(kRoot + "/scenes"))
     if (entry.path().extension() == ".toml") read_scene(entry.path().string());

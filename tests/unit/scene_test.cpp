@@ -133,9 +133,9 @@ TEST_F(SceneTest, ErrorsWordForWord) {
             "a.toml:10:13: 'stiffness' must be a stiffness such as \"1 MN/m\", but \"1 MN\" is a force");
   EXPECT_EQ(error(with("\"elastic\"", "\"elastc\"")),
             "a.toml:9:8: unknown law 'elastc'\n  hint: did you mean 'elastic'?");
-  EXPECT_EQ(
-      error(with("\"elastic\"", "\"plasma\"")),
-      "a.toml:9:8: unknown law 'plasma'\n  hint: known: elastic, brittle, ductile, viscous, spline, lj or rule");
+  EXPECT_EQ(error(with("\"elastic\"", "\"plasma\"")),
+            "a.toml:9:8: unknown law 'plasma'\n  hint: known: elastic, brittle, ductile, viscous, spline, lj "
+            "or rule");
   EXPECT_EQ(error(with("[1.5, 1.5, 2.9]", "[1.5, 0.4, 2.9]")),
             "a.toml:4:1: the geometry is 0.0004 m along y, less than the pitch 0.0005 m");
   EXPECT_EQ(error(with("shape = \"box\"\nmin = \"[0, 0, 0] mm\"\nmax = \"[1.5, 1.5, 2.9] mm\"",
