@@ -39,13 +39,10 @@ class FormulaForce final : public LawFunction {
 // The table, where the force is its value at r, and nothing else.
 const PointTable* table_of(const RuleProgram& program) {
   const RealGraph& graph = program.rounds[0].pair;
+  const Radial radial(graph);
   const auto is_r = [&](NodeId id) {
-    const Tape tape(graph, id);
-    constexpr double kSome[] = {0.7, 1, 1.3};
     const RealNode& node = graph.at(id);
-    return node.op == RealOp::square_root && Radial(graph).is_of_r(id) &&
-           std::ranges::all_of(
-               kSome, [&](double part) { return tape.at(part * program.reach) == part * program.reach; });
+    return node.op == RealOp::square_root && radial.is_r2(node.of[0]);
   };
   const RealNode& product = graph.at(program.rounds[0].terms[0]);
   if (product.op != RealOp::multiply) return nullptr;

@@ -105,12 +105,6 @@ void Tape::run(std::span<const double> r, std::span<double> value) const {
   }
 }
 
-double Tape::at(double r) const {
-  double value = 0;
-  run({&r, 1}, {&value, 1});
-  return value;
-}
-
 double Tape::slope(double r) const {
   std::vector<Slope> of(nodes_.size());
   for (size_t k = 0; k < nodes_.size(); ++k) {

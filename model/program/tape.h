@@ -15,7 +15,6 @@ class Tape {
   Tape(const RealGraph& graph, NodeId root);
 
   void run(std::span<const double> r, std::span<double> value) const;
-  double at(double r) const;
   double slope(double r) const;  // by r
 
  private:
