@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct {
 
@@ -40,7 +40,7 @@ struct Input {
   uint64_t stall_seed = 1;
   std::string stage{}, from{};  // model/run/start.h
   bool looks_only = false;      // the same
-  std::string faults{};  // on the links of such an engine: hw/link_code.h, read_fault_share; empty: none
+  std::string faults{};  // on the links of such an engine: hw/arch/link_code.h, read_fault_share; empty: none
   uint64_t fault_seed = 1;
 
   void add_to(Command& command);

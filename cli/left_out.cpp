@@ -2,10 +2,10 @@
 // What this build was configured without: it is on the command line all the same, and says so when asked.
 #include <fmt/format.h>
 
-#include "cli/boards.h"
 #include "cli/command.h"
-#include "cli/emit.h"
-#include "cli/learn.h"
+#include "cli/machine/boards.h"
+#include "cli/machine/emit.h"
+#include "cli/study/learn.h"
 #include "hw/program/options.h"
 #include "model/base/error.h"
 

@@ -11,7 +11,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/help.h"
-#include "cli/learn.h"
+#include "cli/study/learn.h"
 #include "hw/program/command_line.h"
 #include "hw/program/options.h"
 #include "model/base/resources.h"

@@ -7,7 +7,7 @@
 #include "cli/command.h"
 #include "cli/commit.h"
 #include "emu/lattice/program.h"
-#include "hw/engines.h"
+#include "hw/engine/engines.h"
 #include "model/base/process.h"
 #include "model/trace/trace_head.h"
 

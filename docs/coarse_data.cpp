@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/atom_motion.h"
-#include "model/coarse/coarse_grain.h"
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_motion.h"
+#include "model/atoms/coarse/coarse_grain.h"
 
 using namespace cuboct;
 

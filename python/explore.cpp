@@ -10,11 +10,11 @@
 
 #include "model/base/directory_lock.h"
 #include "python/catch_interrupt.h"
-#include "study/interrupted.h"
-#include "study/measures.h"
-#include "study/runner.h"
-#include "study/series.h"
-#include "study/table.h"
+#include "study/report/table.h"
+#include "study/sweep/interrupted.h"
+#include "study/sweep/measures.h"
+#include "study/sweep/runner.h"
+#include "study/sweep/series.h"
 #endif
 
 namespace cuboct::python {

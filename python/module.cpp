@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "cli/summary.h"
-#include "cli/templates.h"
-#include "hw/scene_engine.h"
+#include "cli/run/summary.h"
+#include "cli/run/templates.h"
+#include "hw/engine/scene_engine.h"
 #include "model/analysis/motion_warnings.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
@@ -20,8 +20,8 @@
 #include "model/base/spelling.h"
 #include "model/base/standard_streams.h"
 #include "model/base/utf8.h"
+#include "model/config/config.h"
 #include "model/rules/rounds_rule.h"
-#include "model/scene/config.h"
 #include "model/trace/trace_head.h"
 #include "python/explore.h"
 #include "python/runs.h"
@@ -166,7 +166,7 @@ py::dict check(const Sources& sources) {
   out["dt"] = scene.rule.dt;
   out["dt_limit"] = scene.dt_limit > 0 ? py::cast(scene.dt_limit) : py::none();
   out["steps"] = scene.steps;
-  const bool machine = rounds_of(scene.rule) == nullptr;
+  const bool machine = scene.rule.rounds == nullptr;
   out["cells"] = machine ? py::cast(plan.lattice.size()) : py::none();
   out["cell_edge"] = plan.rule.cell_edge;
   out["nodes"] = machine ? py::cast(plan.nodes()) : py::none();

@@ -5,9 +5,9 @@
 
 #include <utility>
 
-#include "cli/engine_run.h"
-#include "cli/outputs.h"
-#include "hw/engine_kind.h"
+#include "cli/run/engine_run.h"
+#include "cli/run/outputs.h"
+#include "hw/engine/engine_kind.h"
 #include "model/base/interrupt.h"
 #include "model/run/start.h"
 

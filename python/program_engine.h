@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "cli/engine_options.h"
+#include "cli/run/engine_options.h"
 #include "model/base/process.h"
 #include "model/run/state_engine.h"
 #include "python/sources.h"

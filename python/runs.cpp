@@ -5,13 +5,13 @@
 
 #include <set>
 
-#include "cli/engine_run.h"
-#include "cli/estimate.h"
-#include "cli/outputs.h"
-#include "cli/run_engines.h"
-#include "cli/summary.h"
-#include "hw/engines.h"
-#include "hw/scene_engine.h"
+#include "cli/run/engine_run.h"
+#include "cli/run/estimate.h"
+#include "cli/run/outputs.h"
+#include "cli/run/run_engines.h"
+#include "cli/run/summary.h"
+#include "hw/engine/engines.h"
+#include "hw/engine/scene_engine.h"
 #include "model/analysis/meter.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
@@ -61,7 +61,7 @@ void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
 Fields shown_by(const Rule& rule, const RealFrame& frame) {
   Fields fields;
   for (size_t k = 0; k < frame.shown.size(); ++k)
-    fields.emplace_back(rounds_of(rule)->declaration().shown[k].name, frame.shown[k]);
+    fields.emplace_back(rule.rounds->declaration().shown[k].name, frame.shown[k]);
   return fields;
 }
 

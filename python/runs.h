@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/engine_options.h"
+#include "cli/run/engine_options.h"
 #include "model/run/record.h"
 #include "python/sources.h"
 

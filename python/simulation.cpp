@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "cli/advice.h"
-#include "cli/estimate.h"
-#include "cli/outputs.h"
-#include "hw/engine_kind.h"
-#include "hw/engines.h"
-#include "hw/scene_engine.h"
+#include "cli/run/advice.h"
+#include "cli/run/estimate.h"
+#include "cli/run/outputs.h"
+#include "hw/engine/engine_kind.h"
+#include "hw/engine/engines.h"
+#include "hw/engine/scene_engine.h"
 #include "model/analysis/crack.h"
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "cli/engine_options.h"
+#include "cli/run/engine_options.h"
 #include "emu/lattice/run.h"
 #include "model/analysis/meter.h"
 #include "model/analysis/strain.h"

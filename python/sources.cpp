@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
-#include "hw/scene_engine.h"
+#include "hw/engine/scene_engine.h"
 #include "model/base/output.h"
+#include "model/config/config.h"
 #include "model/run/start.h"
-#include "model/scene/config.h"
 
 namespace cuboct::python {
 namespace {

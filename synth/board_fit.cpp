@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw/node_memories.h"
-#include "hw/rtl_emit.h"
+#include "hw/cost/node_memories.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/error.h"
 #include "model/base/process.h"
 #include "model/base/quantity_text.h"

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "hw/board.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
+#include "hw/rtl/board.h"
 #include "model/contract/state.h"
 
 namespace cuboct::synth {

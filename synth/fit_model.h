@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What a node takes on a device, as a function of brick, lanes and pipes: its memories as they are counted
-// (hw/node_memories.h) in the blocks that the device has, all else as synthesis measured it for a few nodes,
-// straight lines between.
+// (hw/cost/node_memories.h) in the blocks that the device has, all else as synthesis measured it for a few
+// nodes, straight lines between.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "hw/fit.h"
-#include "hw/node_memories.h"
+#include "hw/cost/node_memories.h"
+#include "hw/cost/room_search.h"
 #include "synth/target.h"
 
 namespace cuboct::synth {

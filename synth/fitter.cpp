@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "hw/rtl_emit.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/interrupt.h"
-#include "model/scene/changes.h"
-#include "model/scene/config.h"
+#include "model/config/changes.h"
+#include "model/config/config.h"
 #include "synth/tool.h"
 
 namespace cuboct::synth {

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "hw/board.h"
-#include "hw/fit.h"
-#include "hw/node_memories.h"
-#include "hw/setup.h"
+#include "hw/cost/node_memories.h"
+#include "hw/cost/room_search.h"
+#include "hw/plan/setup.h"
+#include "hw/rtl/board.h"
 #include "synth/fit_measure.h"
 #include "synth/fit_model.h"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw/energy.h"
-#include "hw/node_memories.h"
-#include "hw/pair_work.h"
+#include "hw/cost/energy.h"
+#include "hw/cost/node_memories.h"
+#include "hw/cost/pair_work.h"
 #include "synth/fit_model.h"
 
 namespace cuboct::synth {

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "hw/plan.h"
-#include "hw/technology.h"
+#include "hw/cost/technology.h"
+#include "hw/plan/plan.h"
 #include "synth/target.h"
 
 namespace cuboct::synth {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "hw/rtl_prefix.h"
+#include "hw/rtl/rtl_prefix.h"
 #include "model/base/error.h"
 
 namespace cuboct::synth {

@@ -10,7 +10,7 @@ namespace cuboct::synth {
 
 // Cycles per step.
 struct ProjectCycles {
-  uint64_t expected = 0;  // of the busiest node at the scene's start (hw/cycles.h)
+  uint64_t expected = 0;  // of the busiest node at the scene's start (hw/cost/cycles.h)
   // Exact, over the first `steps` steps; steps = 0: nobody counted.
   double mean = 0;
   uint64_t most = 0, steps = 0;
@@ -25,7 +25,7 @@ struct Project {
   int capacity = 0;
   ProjectCycles cycles;
   std::vector<std::string> files;  // below the directory, in the order to read
-  std::string prefix;              // of its modules, "left_" (hw/rtl_prefix.h)
+  std::string prefix;              // of its modules, "left_" (hw/rtl/rtl_prefix.h)
 };
 
 // Throws InputError: no such directory, no project, an entry that is missing or of another kind, a file that

@@ -11,7 +11,7 @@
 
 #include "emu/machine/collector.h"
 #include "emu/machine/words.h"
-#include "hw/board.h"
+#include "hw/rtl/board.h"
 
 namespace cuboct::emu {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "emu/board/host.h"
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 
 namespace cuboct::emu {
 

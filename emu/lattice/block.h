@@ -18,7 +18,7 @@
 #include "emu/lattice/aligned.h"
 #include "emu/lattice/entry.h"
 #include "emu/lattice/kernel_rule.h"
-#include "emu/lattice/slots.h"
+#include "emu/timing/slots.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {

@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "hw/cell_box.h"
+#include "hw/arch/cell_box.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "emu/lattice/ranks.h"
-#include "emu/lattice/slots.h"
-#include "hw/plan.h"
+#include "emu/timing/slots.h"
+#include "hw/plan/plan.h"
 #include "model/contract/state.h"
 
 namespace cuboct::emu {

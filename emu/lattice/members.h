@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "emu/lattice/aligned.h"
-#include "emu/lattice/slots.h"
+#include "emu/timing/slots.h"
 #include "model/base/error.h"
 #include "model/contract/lattice.h"
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "emu/lattice/timing.h"
-#include "hw/engine_kind.h"
-#include "hw/setup.h"
-#include "hw/state_bounds.h"
+#include "emu/timing/timing.h"
+#include "hw/engine/engine_kind.h"
+#include "hw/plan/setup.h"
+#include "hw/plan/state_bounds.h"
 #include "model/base/resources.h"
 #include "model/run/state_engine.h"
 

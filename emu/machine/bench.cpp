@@ -218,8 +218,8 @@ void Bench::wire(uint32_t n, int face) {
   }
   Link &from = channel("_from"), &to = channel("_to");
   const std::string name = fmt::format("board_{}_{}", n, face);
-  BoardLink& board =
-      *board_links_.emplace_back(std::make_unique<BoardLink>(name.c_str(), timeline_, plan_.arch.boards));
+  DeviceLink& board =
+      *board_links_.emplace_back(std::make_unique<DeviceLink>(name.c_str(), timeline_, plan_.arch.boards));
   board.clk_i(clk_i);
   sender(from);
   board.link_i(from);

@@ -11,10 +11,10 @@
 #include <systemc>
 #include <vector>
 
-#include "emu/machine/board_link.h"
 #include "emu/machine/collector.h"
+#include "emu/machine/device_link.h"
 #include "emu/machine/link.h"
-#include "emu/machine/plain.h"
+#include "emu/machine/loop_bench.h"
 
 namespace cuboct::emu {
 
@@ -123,7 +123,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   Collector collector_;
   sc_core::sc_vector<sc_core::sc_signal<Control>> control_;
   std::vector<std::unique_ptr<Link>> links_;
-  std::vector<std::unique_ptr<BoardLink>> board_links_;
+  std::vector<std::unique_ptr<DeviceLink>> board_links_;
   std::vector<std::unique_ptr<NodeModule>> nodes_;
   std::vector<NodeModule*> expected_;  // at the next edge
   Host state_ = Host::reset;

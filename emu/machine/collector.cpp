@@ -34,7 +34,7 @@ uint64_t patience_of(const Plan& plan, double stall_rate) {
   const uint64_t beats =
       16 * c * cells * static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
   // Between devices a beat takes longer, and the next one waits; each of six phases ends with one.
-  const Boards& boards = plan.arch.boards;
+  const DeviceCut& boards = plan.arch.boards;
   const uint64_t slow = boards.several() ? static_cast<uint64_t>(boards.interval) : 1;
   const uint64_t far = boards.several() ? 64 * static_cast<uint64_t>(boards.latency) : 0;
   return 4 * force + far +

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "emu/machine/wire_faults.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 #include "model/trace/trace.h"
 
 namespace cuboct::emu {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "emu/machine/machine_engine.h"
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 #include "hw/program/options.h"
 #include "hw/program/program.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "emu/machine/node_model.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct {
 class Command;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "emu/machine/node_model.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct::emu {
 

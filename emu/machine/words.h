@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The words of hw/words.h, packed and unpacked: halo records and particles.
+// The words of hw/arch/words.h, packed and unpacked: halo records and particles.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
 #include "emu/machine/bits.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct::emu {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "emu/systemc/force_machine.h"
-#include "hw/bricks.h"
+#include "hw/arch/bricks.h"
 
 namespace cuboct::emu {
 

@@ -16,7 +16,7 @@
 #include "emu/machine/words.h"
 #include "emu/systemc/fault_keeper.h"
 #include "emu/systemc/force_clock.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct::emu {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "emu/machine/node_model.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {

@@ -11,7 +11,7 @@
 
 namespace cuboct::emu {
 
-constexpr int kPlanarSlots = 256;  // the most that a node holds (hw/plan.h)
+constexpr int kPlanarSlots = 256;  // the most that a node holds (hw/plan/plan.h)
 
 // The slots' positions, B fractional bits: the leading ones of P.
 struct PlanarSlots {

@@ -18,7 +18,7 @@
 #include "emu/verilated/serial_line.h"
 #include "hw/program/command_line.h"
 #include "hw/program/options.h"
-#include "hw/rtl_prefix.h"
+#include "hw/rtl/rtl_prefix.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/standard_streams.h"

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "emu/verilated/sources.h"
-#include "hw/rtl_emit.h"
-#include "hw/rtl_prefix.h"
+#include "hw/rtl/rtl_emit.h"
+#include "hw/rtl/rtl_prefix.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
 

@@ -9,7 +9,7 @@
 
 #include "emu/verilated/abi.h"
 #include "emu/verilated/compile.h"
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct::emu {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "emu/machine/words.h"
-#include "hw/rtl_design.h"
+#include "hw/rtl/rtl_design.h"
 #include "model/trace/trace.h"
 
 namespace cuboct::emu {

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 
+#include "hw/plan/setup.h"
 #include "hw/program/command_line.h"
 #include "hw/program/error_file.h"
 #include "hw/program/frame_files.h"
 #include "hw/program/options.h"
-#include "hw/setup.h"
 #include "model/analysis/meter.h"
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
@@ -82,7 +82,7 @@ int tell(EngineProgram& program, const Parsed& parsed, const Scene& scene, const
 int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& arch) {
   ProgramOptions& options = parsed.options;
   const bool leads = program.leads();
-  const RoundsRule* rounds = rounds_of(scene.rule);
+  const RoundsRule* rounds = scene.rule.rounds.get();
   const bool text = program.abilities.text && rounds != nullptr && rounds->text() != nullptr;
   const Plan plan = text ? program_plan_of(scene, arch) : plan_of(scene, arch);
   settle(program, parsed, scene);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 #include "model/run/record.h"
 
 namespace cuboct {

@@ -49,7 +49,7 @@ class Reach {
 }  // namespace
 
 double bond_reach(const Rule& rule, int type_i, int type_j) {
-  if (const RoundsRule* rounds = rounds_of(rule)) return rounds->bond_reach();
+  if (const RoundsRule* rounds = rule.rounds.get()) return rounds->bond_reach();
   return rule.only_touch(type_i, type_j) ? 0 : rule.law_of(type_i, type_j).cutoff();
 }
 

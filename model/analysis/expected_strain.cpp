@@ -106,7 +106,7 @@ class Equilibrium {
 }  // namespace
 
 double bond_range(const Scene& scene) {
-  const double rest = scene.pitch > 0 ? scene.pitch : stiffest_rest_distance(*scene.rule.law);
+  const double rest = scene.pitch > 0 ? scene.pitch : stiffest_rest_distance(scene.rule.law_at(0));
   return std::min(1.2 * rest, scene.rule.cutoff());
 }
 

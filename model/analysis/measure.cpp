@@ -116,7 +116,7 @@ void add_energies(const Rule& rule, const std::vector<Particle>& particles, cons
   energy.resize(std::max(energy.size(), pairs.count));
   const std::span<const double> r(pairs.r.data(), pairs.count);
   if (one_law(rule))
-    energies_of(*rule.law, r, {energy.data(), pairs.count});
+    energies_of(rule.law_at(0), r, {energy.data(), pairs.count});
   else
     energies_by_law(rule, particles, pairs, energy);
   for (size_t k = 0; k < pairs.count; ++k) {

@@ -31,7 +31,7 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
       fields_ |= probe.kind == Probe::Kind::field;
     }
   // What a run is watched for is of pair laws.
-  const bool watch = options.watch && rounds_of(scene.rule) == nullptr;
+  const bool watch = options.watch && scene.rule.rounds == nullptr;
   if (options.energies && watch) watch_.emplace(scene, options.table_error, options.threads);
 }
 

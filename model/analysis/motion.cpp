@@ -24,13 +24,13 @@ const Body& planned_body(const Scene& scene) { return scene.body.exact ? scene.p
 // Of the bond between nearest neighbours at rest, and their distance.
 void read_bond(const Scene& scene, Motion& motion) {
   const Rule& rule = scene.whole ? *scene.whole : scene.rule;
-  if (const RoundsRule* rounds = rounds_of(rule)) {
+  if (const RoundsRule* rounds = rule.rounds.get()) {
     motion.rest_distance = scene.pitch > 0 ? scene.pitch : rule.cutoff();
     motion.bond_stiffness = rounds->stiffness();
     motion.sound_speed = rounds->sound_speed(rule.mass);
     return;
   }
-  const double rest = stiffest_rest_distance(*rule.law);
+  const double rest = stiffest_rest_distance(rule.law_at(0));
   motion.rest_distance = scene.pitch > 0 ? scene.pitch : rest > 0 ? rest : rule.cutoff();
   if (scene.pitch > 0 || rest > 0) motion.bond_stiffness = stiffest_bond(rule, motion.rest_distance);
   if (motion.bond_stiffness == 0 &&

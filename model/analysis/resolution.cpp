@@ -85,7 +85,7 @@ void Resolution::choose_bonds() {
   const Rule& rule = scene_.rule;
   const Body& body = scene_.body;
   const double range = bond_range(scene_);
-  rest_ = scene_.pitch > 0 ? scene_.pitch : stiffest_rest_distance(*rule.law);
+  rest_ = scene_.pitch > 0 ? scene_.pitch : stiffest_rest_distance(rule.law_at(0));
   if (range > 0 && rest_ > 0) stiffness_ = stiffest_bond(rule, rest_);
   double apart = 0;
   if (stiffness_ > 0) {

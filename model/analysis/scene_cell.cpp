@@ -10,7 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/base/spelling.h"
-#include "model/scene/packing.h"
+#include "model/body/packing.h"
 
 namespace cuboct {
 namespace {

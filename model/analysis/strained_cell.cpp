@@ -27,7 +27,7 @@ StrainedCell::StrainedCell(const Rule& rule, CrystalCell cell, int threads)
     : rule_(rule), cell_(std::move(cell)), threads_(threads) {
   rule_.damping.coefficient = 0;
   for (ParticleType& type : rule_.types) type.pd = false;  // of the pairs alone
-  const RoundsRule* rounds = rounds_of(rule_);
+  const RoundsRule* rounds = rule_.rounds.get();
   if (rounds != nullptr) refuse_cell(rule_);
   range_ = (reaches_of(rule_) + kMargin) * rule_.cutoff();
   lasting_ = has_reference_bonds(rule_);
@@ -57,7 +57,7 @@ void StrainedCell::places(const CrystalCell& cell, std::vector<Vec3>& to) const 
 
 void StrainedCell::make_engine() {
   const RealOptions options{.threads = threads_};
-  if (rounds_of(rule_) == nullptr) {
+  if (rule_.rounds == nullptr) {
     reference_.emplace(rule_, body_, Periodic{}, options);
     return;
   }
@@ -147,7 +147,7 @@ Matrix6 constants_by_strain(const Rule& rule, const CrystalCell& cell, double st
 
 ElasticTensor tensor_of(const Rule& rule, const CrystalCell& cell, double strain, int threads,
                         uint64_t& evaluations) {
-  if (rounds_of(rule) == nullptr) return elastic_tensor(rule, cell);
+  if (rule.rounds == nullptr) return elastic_tensor(rule, cell);
   ElasticTensor tensor;
   tensor.stress = StrainedCell(rule, cell, threads).stress();
   tensor.c = constants_by_strain(rule, cell, strain, threads, evaluations);

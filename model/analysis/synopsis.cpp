@@ -5,7 +5,7 @@
 
 #include "model/analysis/motion.h"
 #include "model/base/quantity_text.h"
-#include "model/scene/packing.h"
+#include "model/body/packing.h"
 
 namespace cuboct {
 namespace {

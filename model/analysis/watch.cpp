@@ -79,7 +79,7 @@ bool in_balance(const Rule& rule, const Body& body, const Periodic& periodic, do
 
 // Of a body some pair is as near as a bond at rest, or few are at all: those are looked for first.
 ClosestPair closest_of(const Rule& rule, const std::vector<Vec3>& x, const Periodic& periodic) {
-  const double bond = std::min(1.01 * bond_length(*rule.law), rule.cutoff());
+  const double bond = std::min(1.01 * bond_length(rule.law_at(0)), rule.cutoff());
   ClosestPair closest;
   for (const double range : {bond, rule.cutoff()}) {
     CellList cells(range, periodic);
@@ -112,7 +112,7 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
       threads_(threads),
       type_(scene.body.type) {
   const Rule& rule = scene.rule;
-  const PairLaw& law = *rule.law;
+  const PairLaw& law = rule.law_at(0);
   for (size_t k = 0; k < rule.laws(); ++k) {
     const PairLaw& one = rule.law_at(k);
     pull_ = std::max(pull_, strongest_pull(one));

@@ -70,7 +70,7 @@ struct FixedRule {
   std::vector<FixedType> types;
   bool weighted = false;  // masses differ: some weight is below 1
   bool pd = false;        // some type is held or moved by force
-  // 2: every particle has z = 0, v_z = 0 and u_z = 0 for ever (hw/setup.h), and no record holds them.
+  // 2: every particle has z = 0, v_z = 0 and u_z = 0 for ever (hw/plan/setup.h), and no record holds them.
   int axes = 3;
 
   // Derived shifts, all >= 0.

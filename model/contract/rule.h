@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -61,8 +60,14 @@ inline bool is_free(const ParticleType& type, int axis) { return !type.imposed[a
 // have.
 inline constexpr size_t kMostLaws = 4;
 
+class RoundsRule;  // model/rules/rounds_rule.h
+
+// Of pairs, or of rounds: exactly one of `law` and `rounds` is there.
 struct Rule {
   std::shared_ptr<const PairLaw> law;  // of all pairs of materials that have none of their own
+  // A rule of several rounds, and the distance beyond which it lets no particle act on another, m.
+  std::shared_ptr<const RoundsRule> rounds;
+  double rounds_reach = 0;
   // Of pairs of materials with laws of their own, each once. Symmetric, materials x materials: 0 means `law`,
   // k other_laws[k - 1]. Both empty where `law` serves all.
   std::vector<std::shared_ptr<const PairLaw>> other_laws;
@@ -80,7 +85,11 @@ struct Rule {
   double contact_distance = 0;  // m, where the laws' push ends (law.h); only with `contact`
 
   size_t laws() const { return 1 + other_laws.size(); }
-  const PairLaw& law_at(size_t k) const { return k == 0 ? *law : *other_laws[k - 1]; }
+  // InputError where the rule is of rounds: a body that has them is not one without forces.
+  const PairLaw& law_at(size_t k) const {
+    if (law == nullptr) refuse_pairs();
+    return k == 0 ? *law : *other_laws[k - 1];
+  }
   size_t law_between(size_t material, size_t other) const {
     return law_index.empty() ? 0 : law_index[material][other];
   }
@@ -97,14 +106,14 @@ struct Rule {
                        static_cast<size_t>(types[type_j].material));
   }
   const PairLaw& law_of(int type_i, int type_j) const { return law_at(law_index_of(type_i, type_j)); }
-  // Of all laws the longest cutoff and the shortest core, m.
+  // Of all laws the longest cutoff and the shortest core, m; of rounds the reach, and a thousandth of it.
   double cutoff() const {
-    double longest = law->cutoff();
+    double longest = law ? law->cutoff() : rounds_reach;
     for (const auto& other : other_laws) longest = std::max(longest, other->cutoff());
     return longest;
   }
   double core() const {
-    double shortest = law->core();
+    double shortest = law ? law->core() : rounds_reach / 1000;
     for (const auto& other : other_laws) shortest = std::min(shortest, other->core());
     return shortest;
   }
@@ -152,6 +161,9 @@ struct Rule {
     const double beyond = only_touch(type_i, type_j) ? of.energy(end) : 0;
     return (of.energy(r) - beyond) * strength_of(type_i, type_j);
   }
+
+ private:
+  [[noreturn]] void refuse_pairs() const;  // defined where rounds are known: model/rules/rounds_rule.cpp
 };
 
 struct ExactBody;

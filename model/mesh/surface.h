@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/base/vec.h"
-#include "model/scene/mesh.h"
+#include "model/body/mesh.h"
 
 namespace cuboct {
 

@@ -18,7 +18,6 @@ class ProgramRule final : public RoundsRule {
 
   const RuleProgram* text() const override { return &program_; }
   const RuleDeclaration& declaration() const override { return program_.declaration; }
-  double reach() const override { return program_.reach; }
   double bond_reach() const override;
   double stable_time_step(double mass, double pitch) const override;
   double stiffness() const override { return program_.stiffness; }

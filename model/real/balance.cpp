@@ -35,8 +35,8 @@ Balance::Balance(const Rule& rule, const Body& body, const Periodic& periodic, i
       body_(at_rest(rule, body)),
       periodic_(periodic),
       threads_(threads),
-      stiffness_(rounds_of(rule) != nullptr ? rounds_of(rule)->stiffness()
-                                            : largest_site_stiffness(rule, body, periodic)) {
+      stiffness_(rule.rounds != nullptr ? rule.rounds->stiffness()
+                                        : largest_site_stiffness(rule, body, periodic)) {
   make_lists();
   for (size_t i = 0; i < body_.u.size(); ++i) anchor_.push_back(body_.x[i] - body_.u[i]);
 }

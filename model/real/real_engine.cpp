@@ -285,7 +285,7 @@ class Engine final : public RealEngine {
 
 std::unique_ptr<RealEngine> make_real_engine(const Rule& rule, const Body& body, const Periodic& periodic,
                                              const RealOptions& options) {
-  if (rounds_of(rule) != nullptr) return make_rounds_engine(rule, body, periodic, options);
+  if (rule.rounds != nullptr) return make_rounds_engine(rule, body, periodic, options);
   if (options.precision == Precision::float32)
     return std::make_unique<Engine<float>>(rule, body, periodic, options);
   return std::make_unique<Engine<double>>(rule, body, periodic, options);

@@ -28,7 +28,7 @@ class RoundsEngine final : public RealEngine {
         v_(body.v),
         u_(body.u),
         type_(body.type),
-        rounds_(*rounds_of(rule)),
+        rounds_(*rule.rounds),
         remembers_(has_memory(rule)),
         terms_(rounds_.bind(rule, as_packed(body), periodic, options.threads)),
         steps_(options.first_step) {
@@ -152,7 +152,7 @@ class RoundsEngine final : public RealEngine {
 
 std::unique_ptr<RealEngine> make_rounds_engine(const Rule& rule, const Body& body, const Periodic& periodic,
                                                const RealOptions& options) {
-  const std::string name = rounds_of(rule)->declaration().name;
+  const std::string name = rule.rounds->declaration().name;
   if (options.precision == Precision::float32)
     throw InputError(fmt::format("the rule '{}' runs in doubles: --precision float is not for it", name));
   if (options.order_seed != 0) throw InputError(fmt::format("the rule '{}' sums in one order, by id", name));

@@ -113,7 +113,7 @@ double LpsMaterial::weight(double r) const {
   return power * shape;
 }
 
-double LpsMaterial::left(double most) const { return lps_left(most, critical_stretch, damage_width); }
+double LpsMaterial::left(double most) const { return intact_share(most, critical_stretch, damage_width); }
 
 double full_weight(const LpsMaterial& material, const std::vector<Vec3>& full) {
   return moment(material, full, 2);

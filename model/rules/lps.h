@@ -79,7 +79,6 @@ class LpsRule final : public RoundsRule {
           std::vector<char> unbreakable = {});
 
   const RuleDeclaration& declaration() const override { return declaration_; }
-  double reach() const override { return material_.horizon; }
   double bond_reach() const override;
   double stable_time_step(double mass, double pitch) const override;
   double stiffness() const override;

@@ -38,7 +38,7 @@ CUBOCT_HD inline LpsBondNow<Real> lps_now(const Real* r, Real packed, const Real
 // What is left of a bond that was stretched by `most` at most, 1 to 0. Beyond 20 widths from the critical
 // stretch (1 -+ tanh)/2 is 1 or 0 to the last bit of a double.
 template <class Real>
-CUBOCT_HD inline Real lps_left(Real most, Real critical, Real width) {
+CUBOCT_HD inline Real intact_share(Real most, Real critical, Real width) {
   using std::tanh;
   if (width == 0) return most < critical ? Real(1) : Real(0);
   if (most < critical - 20 * width) return Real(1);

@@ -20,51 +20,18 @@ namespace {
       .about({"rule.kind", "rule.file", "rule"});
 }
 
-class RoundsLaw final : public PairLaw {
- public:
-  RoundsLaw(double reach, std::shared_ptr<const RoundsRule> rule) : reach_(reach), rule_(std::move(rule)) {}
-  double force(double) const override { return none(); }
-  double energy(double) const override { return none(); }
-  double slope(double) const override { return none(); }
-  double cutoff() const override { return reach_; }
-  double core() const override { return reach_ / 1000; }
-  const RoundsRule* rule() const { return rule_.get(); }
-
- private:
-  // Who asks for a pair force would take the body for one without any.
-  double none() const {
-    if (rule_ != nullptr) refuse(*rule_, "what is asked for");
-    return 0;
-  }
-
-  double reach_;
-  std::shared_ptr<const RoundsRule> rule_;
-};
-
 }  // namespace
 
-std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule) {
-  return std::make_shared<RoundsLaw>(reach, std::move(rule));
-}
-
-const RoundsRule* rounds_of(const Rule& rule) {
-  const auto* law = dynamic_cast<const RoundsLaw*>(rule.law.get());
-  return law == nullptr ? nullptr : law->rule();
-}
-
 bool has_reference_bonds(const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
-  return rounds != nullptr && rounds->declaration().bonds == BondRange::reference;
+  return rule.rounds != nullptr && rule.rounds->declaration().bonds == BondRange::reference;
 }
 
 bool has_bond_memory(const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
-  return rounds != nullptr && !rounds->declaration().bond.empty();
+  return rule.rounds != nullptr && !rule.rounds->declaration().bond.empty();
 }
 
 bool has_memory(const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
-  return has_bond_memory(rule) || (rounds != nullptr && !rounds->declaration().kept.empty());
+  return has_bond_memory(rule) || (rule.rounds != nullptr && !rule.rounds->declaration().kept.empty());
 }
 
 Body with_bonds(const Rule& rule, Body body, const Body& start) {
@@ -92,8 +59,13 @@ void recall_bonds(RoundsTerms& terms, const Body& body) {
   terms.recall({kept.begin() + 1, kept.end()});
 }
 
+void Rule::refuse_pairs() const {
+  if (rounds == nullptr) throw std::logic_error("a rule without law and rounds");
+  refuse(*rounds, "what is asked for");
+}
+
 void refuse_rounds(const Rule& rule, const std::string& who) {
-  if (const RoundsRule* rounds = rounds_of(rule)) refuse(*rounds, who);
+  if (rule.rounds != nullptr) refuse(*rule.rounds, who);
 }
 
 }  // namespace cuboct

@@ -71,8 +71,6 @@ class RoundsRule {
   virtual const RuleDeclaration& declaration() const = 0;
   // The chemical element whose atoms the particles are; empty: none.
   virtual std::string element() const { return {}; }
-  // m, beyond which no particle has a bond to another.
-  virtual double reach() const = 0;
   // m, beyond which the bond of two nearest neighbours is broken; infinite where none breaks.
   virtual double bond_reach() const = 0;
   // s, the largest stable time step of an undamaged body; 0 where it is not known.
@@ -89,12 +87,6 @@ class RoundsRule {
                                             int threads) const = 0;
 };
 
-// What stands for the pair law in a Rule that has rounds, with the rule's reach. Its force, energy and slope
-// throw InputError, so that nothing that knows pairs alone takes it for a law without force. `rule` may be
-// null while the body is read, on which it depends; then they are 0.
-std::shared_ptr<const PairLaw> rounds_law(double reach, std::shared_ptr<const RoundsRule> rule);
-// The rounds of such a Rule; null: it is of pairs.
-const RoundsRule* rounds_of(const Rule& rule);
 // Whether bonds are those of the body as packed: a body that has moved must say where that was.
 bool has_reference_bonds(const Rule& rule);
 // Whether bonds keep what they went through: a body that goes on must bring it.

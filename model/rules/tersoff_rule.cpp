@@ -100,7 +100,6 @@ class TersoffRule final : public RoundsRule {
     return rule;
   }
   std::string element() const override { return tersoff_.elements.front(); }
-  double reach() const override { return tersoff_.cutoff(); }
   double bond_reach() const override { return tersoff_.cutoff(); }
   double stable_time_step(double mass, double) const override {
     return stiffness_ > 0 ? 2 / std::sqrt(stiffness_ / mass) : 0;

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "model/atoms/bond_order/crystal_rest.h"
 #include "model/base/atom_units.h"
-#include "model/bond_order/crystal_rest.h"
 #include "model/rules/rounds_rule.h"
 
 namespace cuboct {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <ctime>
 
-#include "model/multiscale/element_stiffness.h"
+#include "model/atoms/multiscale/element_stiffness.h"
 #include "model/run/element_progress.h"
 
 namespace cuboct {

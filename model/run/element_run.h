@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "model/multiscale/element_study.h"
-#include "model/multiscale/stretch.h"
+#include "model/atoms/multiscale/element_study.h"
+#include "model/atoms/multiscale/stretch.h"
 
 namespace cuboct {
 

@@ -14,7 +14,7 @@
 namespace cuboct {
 namespace {
 
-const RuleProgram& text_of(const Scene& scene) { return *rounds_of(scene.rule)->text(); }
+const RuleProgram& text_of(const Scene& scene) { return *scene.rule.rounds->text(); }
 
 // Reads one number of a field back.
 double real_of(const FieldScale& scale, int64_t number) {
@@ -163,7 +163,7 @@ Counters IntegerRun::counters_of_state() {
 
 Notes IntegerRun::notes() {
   Notes notes = program_->notes();
-  notes.emplace_back("rule", rounds_of(scene_.rule)->declaration().name);
+  notes.emplace_back("rule", scene_.rule.rounds->declaration().name);
   return notes;
 }
 

@@ -439,7 +439,7 @@ void Loop::finish() {
   const bool hash = request_.last && hashed() && last % request_.hash_every != 0;
   const bool bonds = request_.last && !request_.frames.empty() &&
                      (has_reference_bonds(scene_.rule) || has_memory(scene_.rule));
-  const bool counts = rounds_of(scene_.rule) != nullptr && (request_.last || !lost_);
+  const bool counts = scene_.rule.rounds != nullptr && (request_.last || !lost_);
   if (lost_ && (sample || look || hash || kept || bonds || counts || request_.totals)) go_back_to(last);
   {
     const Timed timed({&trace_.seconds, &besides_});

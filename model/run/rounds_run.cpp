@@ -71,8 +71,8 @@ RunState RoundsRun::frame(bool forces) {
                    now.v,
                    forces ? engine_->forces() : std::vector<Vec3>(),
                    now.u,
-                   rounds_of(scene_.rule)->declaration().shown.empty() ? std::vector<std::vector<double>>()
-                                                                       : engine_->terms()->shown()};
+                   scene_.rule.rounds->declaration().shown.empty() ? std::vector<std::vector<double>>()
+                                                                   : engine_->terms()->shown()};
 }
 
 Reading RoundsRun::read(const Asked& asked) {
@@ -94,7 +94,7 @@ Reading RoundsRun::read(const Asked& asked) {
 
 std::vector<std::vector<double>> RoundsRun::fields_of(std::span<const uint32_t> ids) {
   // Fields that steps hand on are there without an evaluation of the rounds.
-  const RuleProgram* text = rounds_of(scene_.rule)->text();
+  const RuleProgram* text = scene_.rule.rounds->text();
   const bool kept = text && std::ranges::all_of(text->particle,
                                                 [](const auto& field) { return field.kept || !field.shown; });
   const std::vector<std::vector<double>> all = (kept ? engine_->kept_terms() : engine_->terms())->shown();
@@ -129,7 +129,7 @@ Notes RoundsRun::notes() {
   return {{"precision", "double"},
           {"integrator",
            options_->integrator == Integrator::velocity_verlet ? "velocity Verlet" : "semi-implicit Euler"},
-          {"rule", rounds_of(scene_.rule)->declaration().name}};
+          {"rule", scene_.rule.rounds->declaration().name}};
 }
 
 const Body* RoundsRun::saved_body() {
@@ -141,7 +141,7 @@ const Body* RoundsRun::saved_body() {
 EngineMemory RoundsRun::memory() { return {{static_cast<uint64_t>(options_->precision)}, {}}; }
 
 bool RoundsRun::breaks() const {
-  const RoundsRule& rule = *rounds_of(scene_.rule);
+  const RoundsRule& rule = *scene_.rule.rounds;
   return rule.declaration().bonds == BondRange::reference && std::isfinite(rule.bond_reach());
 }
 
@@ -153,7 +153,7 @@ std::vector<double> RoundsRun::damage() const {
 
 std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
   std::vector<std::pair<std::string, std::vector<double>>> fields;
-  const std::vector<RuleField>& names = rounds_of(scene_.rule)->declaration().shown;
+  const std::vector<RuleField>& names = scene_.rule.rounds->declaration().shown;
   std::vector<std::vector<double>> values;
   body();
   if (!names.empty()) values = engine_->terms()->shown();

@@ -7,8 +7,8 @@
 
 #include "model/base/error.h"
 #include "model/base/input_file.h"
+#include "model/config/config.h"
 #include "model/rules/rounds_rule.h"
-#include "model/scene/config.h"
 #include "model/scene/first_step.h"
 #include "model/scene/scene_parts.h"
 #include "model/trace/guarded_trace.h"

@@ -10,7 +10,7 @@ namespace cuboct {
 namespace {
 
 const RuleProgram* text_of(const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
+  const RoundsRule* rounds = rule.rounds.get();
   return rounds == nullptr ? nullptr : rounds->text();
 }
 
@@ -26,7 +26,7 @@ void begin_at_step(Rule& rule, uint64_t step) {
   if (text == nullptr) return;
   RuleProgram program = *text;
   program.first_step = step;
-  rule.law = rounds_law(program.reach, std::make_shared<const ProgramRule>(std::move(program)));
+  rule.rounds = std::make_shared<const ProgramRule>(std::move(program));
 }
 
 }  // namespace cuboct

@@ -13,8 +13,8 @@ inline uint64_t whole_multiple(uint64_t steps, uint64_t of) {
 }
 
 // Energies take all particles and all pairs: one reading costs as much as one to seven steps
-// (cli/estimate.cpp has what was measured). 200 steps apart they take half to three and a half per cent of a
-// run, and all readings together a tenth at most. A short run has 20 all the same. `probe_every` > 0:
+// (cli/run/estimate.cpp has what was measured). 200 steps apart they take half to three and a half per cent
+// of a run, and all readings together a tenth at most. A short run has 20 all the same. `probe_every` > 0:
 // energies are read with probes, at whole multiples of it.
 inline uint64_t usual_energy_every(uint64_t steps, uint64_t probe_every) {
   constexpr uint64_t kApart = 200, kFewest = 20;

@@ -43,14 +43,14 @@ bool asks_place(const std::vector<ProgramRound>& rounds) {
 }  // namespace
 
 double reaches_of(const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
+  const RoundsRule* rounds = rule.rounds.get();
   if (rounds == nullptr) return 1;
   return static_cast<double>(rounds->text()->setup.size() + rounds->text()->rounds.size());
 }
 
 std::vector<std::string> starts_by_place(const Rule& rule) {
   std::vector<std::string> names;
-  const RuleProgram& text = *rounds_of(rule)->text();
+  const RuleProgram& text = *rule.rounds->text();
   std::vector<bool> fields(text.particle_numbers, false);
   const auto asks = [&](const ProgramField& field, const RealGraph& graph) {
     const std::vector<bool> nodes = asking(graph, fields);
@@ -65,7 +65,7 @@ std::vector<std::string> starts_by_place(const Rule& rule) {
 }
 
 void refuse_cell(const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
+  const RoundsRule* rounds = rule.rounds.get();
   if (rounds == nullptr) return;
   const auto refuse = [](const std::string& what, const std::string& hint = "") {
     throw InputError(what, hint).about({"rule.file", "rule"});

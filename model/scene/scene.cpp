@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/config/file_kind.h"
 #include "model/contract/law.h"
 #include "model/rules/no_rest.h"
 #include "model/rules/rounds_rule.h"
-#include "model/scene/file_kind.h"
 #include "model/scene/readings.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
@@ -50,7 +50,7 @@ void read_damping(const ConfigTable& from, Scene& scene) {
   table->not_both("coefficient", "ratio");
   if (table->has("ratio")) {
     const double ratio = table->number("ratio", quantity::number, Range::not_negative());
-    const double stiffness = scene.pitch > 0 ? -scene.rule.law->slope(scene.pitch) : 0;
+    const double stiffness = scene.pitch > 0 && scene.rule.law ? -scene.rule.law->slope(scene.pitch) : 0;
     if (!(stiffness > 0))
       table->at("ratio").fail("'ratio' needs a packing with a stiff bond at its pitch",
                               "give 'coefficient' instead");
@@ -113,7 +113,7 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   TimeLimits limits;
   const double cutoff = rule.cutoff();
-  if (const RoundsRule* rounds = rounds_of(rule)) {
+  if (const RoundsRule* rounds = rule.rounds.get()) {
     limits.given.meet(rounds->stable_time_step(rule.mass, scene.pitch),
                       scene.pitch > 0 ? "the perfect packing" : "the perfect crystal");
     limits.automatic = limits.given;
@@ -134,7 +134,7 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
         if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
     }
     limits.given.meet(vibrations_limit(scene, low, high), "the particles that are listed");
-    if (scene.pitch == 0 && stiffest_rest_distance(*rule.law) > 0.1 * cutoff)
+    if (scene.pitch == 0 && stiffest_rest_distance(rule.law_at(0)) > 0.1 * cutoff)
       limits.automatic.meet(stable_time_step(rule, stiffest_rest_distance),
                             "a packing at the law's rest distance");
   }
@@ -228,7 +228,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
 
 // What a rule must say of itself where the motion between two load steps is left out.
 void check_static_rule(const ConfigTable& root, const Rule& rule) {
-  const RoundsRule* rounds = rounds_of(rule);
+  const RoundsRule* rounds = rule.rounds.get();
   if (rounds == nullptr) return;
   if (const auto why = why_no_rest(*rounds))
     root.at("rule").fail("static loading leaves out time, and " + why->what, why->hint);
@@ -303,7 +303,10 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   CrystalChoice* grown = crystal ? &*crystal : nullptr;
   const std::optional<RuleChoice> rule = read_rule(root, packed, grown);
   const bool rounds = rule && !rule->law;
-  scene.rule.law = rounds ? rounds_law(rule->reach, nullptr) : rule ? rule->law : read_law(root, packed);
+  if (rounds)
+    scene.rule.rounds_reach = rule->reach;
+  else
+    scene.rule.law = rule ? rule->law : read_law(root, packed);
   if (packing) {
     scene.pitch = packing->fcc.pitch;
     scene.orientation = packing->fcc.orientation;
@@ -314,7 +317,7 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const Regions regions(root);
   read_body(root, stage, regions, packed, grown, scene);
   if (stage) stage->check_ramps();
-  if (rounds) scene.rule.law = rounds_law(rule->reach, rule->make(root, regions, scene));
+  if (rounds) scene.rule.rounds = rule->make(root, regions, scene);
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, scene);

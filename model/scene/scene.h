@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "model/base/places.h"
+#include "model/body/mesh.h"
 #include "model/contract/rule.h"
-#include "model/scene/mesh.h"
 
 namespace cuboct {
 

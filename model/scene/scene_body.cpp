@@ -11,8 +11,8 @@
 #include "model/base/error.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
+#include "model/config/name.h"
 #include "model/contract/law.h"
-#include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
 #include "model/scene/symmetry.h"
 
@@ -26,7 +26,7 @@ constexpr double kBytesToRead = 64;     // a particle while it is read: position
 
 // Particles on a region's surface count as inside; where there is no packing the law's cutoff sets the scale.
 double tolerance_of(const Scene& scene) {
-  return kPitchTolerance * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
+  return kPitchTolerance * (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff());
 }
 
 void check_size(const ConfigValue& geometry, const Bounds& bounds, double pitch) {

@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "model/atoms/bond_order/crystal_rest.h"
 #include "model/base/error_parts.h"
-#include "model/bond_order/crystal_rest.h"
-#include "model/scene/config.h"
-#include "model/scene/grains.h"
-#include "model/scene/packing.h"
-#include "model/scene/regions.h"
+#include "model/body/grains.h"
+#include "model/body/packing.h"
+#include "model/body/regions.h"
+#include "model/config/config.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {

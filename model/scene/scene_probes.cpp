@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "model/config/name.h"
 #include "model/rules/rounds_rule.h"
-#include "model/scene/name.h"
 #include "model/scene/scene_parts.h"
 
 namespace cuboct {
@@ -55,7 +55,7 @@ Datasheet read_datasheet(const ConfigTable& table) {
 
 void read_field(const ConfigTable& table, const Scene& scene, Probe& probe) {
   const ConfigValue field = table.at("field");
-  const RoundsRule* rule = rounds_of(scene.rule);
+  const RoundsRule* rule = scene.rule.rounds.get();
   if (rule == nullptr || rule->declaration().shown.empty())
     table.at("kind").fail("a field probe reads fields of a [rule], and there are none here");
   const std::vector<RuleField>& shown = rule->declaration().shown;
@@ -71,7 +71,7 @@ void read_field(const ConfigTable& table, const Scene& scene, Probe& probe) {
 
 // The region is read.
 void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
-  if (rounds_of(scene.rule) != nullptr)
+  if (scene.rule.rounds != nullptr)
     table.at("kind").fail("a crack probe counts the bonds of a pair law, and [rule] has none",
                           "the counters mean_damage and largest_damage of a run tell what broke");
   if (probe.set.ids.size() < 2) table.at("region").fail("a crack needs bonds: two particles or more");
@@ -86,7 +86,7 @@ void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
 }  // namespace
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) {
-  const double tolerance = 1e-6 * (scene.pitch > 0 ? scene.pitch : scene.rule.law->cutoff());
+  const double tolerance = 1e-6 * (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff());
   for (const ConfigTable& table : root.tables("probe")) {
     Probe probe;
     const std::vector<std::string> kinds = {"force",    "displacement",   "stress_strain", "crack",

@@ -8,9 +8,9 @@
 
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
+#include "model/config/file_kind.h"
 #include "model/program/formula_law.h"
 #include "model/program/program_rule.h"
-#include "model/scene/file_kind.h"
 #include "model/scene/scene_parts.h"
 
 namespace cuboct {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/base/error.h"
-#include "model/scene/name.h"
+#include "model/config/name.h"
 #include "model/scene/scene_parts.h"
 #include "model/scene/static_loading.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "model/scene/scene_parts.h"
 
 namespace cuboct {

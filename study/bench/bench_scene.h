@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct {
 

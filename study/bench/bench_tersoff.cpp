@@ -7,9 +7,9 @@
 #include <optional>
 #include <random>
 
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_motion.h"
 #include "model/base/parallel.h"
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/atom_motion.h"
 #include "study/bench/timed.h"
 
 namespace cuboct {

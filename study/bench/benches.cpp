@@ -10,11 +10,11 @@
 #include <memory>
 #include <numeric>
 
+#include "emu/gpu/bench/bench_rows.h"
 #include "emu/lattice/kernel.h"
 #include "emu/lattice/program.h"
 #include "emu/lattice/run.h"
-#include "gpu_ref/bench_rows.h"
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 #include "hw/program/remote.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"

@@ -36,7 +36,7 @@ std::vector<uint64_t> broken_across(const LpsTerms& terms, const std::vector<Vec
 
 CrackBody::CrackBody(const Grid& grid, const Kernel& kernel, const Breaking& breaking, double slit)
     : grid_(grid), home_(grid.all()), x_(home_), force_(home_.size()) {
-  const Symbol symbol(grid, kernel.horizon);
+  const WaveOperator symbol(grid, kernel.horizon);
   const Eigen::VectorXd K = symbol.kernel_at(kernel.alpha, kernel.D);
   const LpsMaterial material = material_of(grid, kernel, breaking);
   terms_ = make_lps_terms(material, symbol.weighted(K), reference_bonds(home_, {}, material.horizon), home_,
@@ -45,11 +45,11 @@ CrackBody::CrackBody(const Grid& grid, const Kernel& kernel, const Breaking& bre
   // From below the sheet, and through its thickness.
   const Slit cut{Vec3(0, -extent[1], -1), Vec3(0, extent[1] / 2 + slit, 0), Vec3(0, 0, 2)};
   terms_->recall(broken_across(*terms_, home_, cut));
-  const Symbol::Parts parts = symbol.parts(symbol.kappa(K));
+  const WaveOperator::Parts parts = symbol.parts(symbol.kappa(K));
   for (size_t k = 0; k < symbol.waves(); ++k)
-    stiffest_ =
-        std::max(stiffest_,
-                 eigensystem<Eigen::Matrix2d>(Symbol::matrix(kernel.lambda, kernel.mu, parts, k)).values[1]);
+    stiffest_ = std::max(
+        stiffest_,
+        eigensystem<Eigen::Matrix2d>(WaveOperator::matrix(kernel.lambda, kernel.mu, parts, k)).values[1]);
 }
 
 const std::vector<Vec3>& CrackBody::force(const std::vector<Vec3>& u, bool keeps) {

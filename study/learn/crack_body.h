@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "model/rules/lps_terms.h"
-#include "study/learn/symbol.h"
+#include "study/learn/wave_operator.h"
 
 namespace cuboct::learn {
 

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "model/base/interrupt.h"
-#include "study/interrupted.h"
-#include "study/kept_lines.h"
 #include "study/learn/field_text.h"
-#include "study/work.h"
+#include "study/sweep/interrupted.h"
+#include "study/sweep/kept_lines.h"
+#include "study/sweep/work.h"
 
 namespace cuboct::learn {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "model/base/error.h"
 #include "study/learn/crack_data.h"
-#include "study/thread_time.h"
-#include "study/work.h"
+#include "study/sweep/thread_time.h"
+#include "study/sweep/work.h"
 
 namespace cuboct::learn {
 namespace {
@@ -88,7 +88,7 @@ void check_cracks(const LearnStudy& study) {
                                         study.fracture.slit, edge),
                             "a shorter 'slit', or more cells")
                      .about({"fracture.slit", "fracture"}));
-  for (const Grid& grid : fracture_grids(study, sheet)) Symbol(grid, study.stretch.horizon);
+  for (const Grid& grid : fracture_grids(study, sheet)) WaveOperator(grid, study.stretch.horizon);
 }
 
 Cracks learn_cracks(const LearnStudy& study, const Learned& learned, const std::string& directory, int jobs) {

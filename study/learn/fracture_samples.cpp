@@ -7,10 +7,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "model/atoms/bond_order/atom_motion.h"
 #include "model/base/error.h"
-#include "model/bond_order/atom_motion.h"
 #include "study/learn/fracture_samples.h"
-#include "study/thread_time.h"
+#include "study/sweep/thread_time.h"
 
 namespace cuboct::learn {
 namespace {

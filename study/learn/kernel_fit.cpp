@@ -28,7 +28,7 @@ double plain(const Eigen::Matrix2d& a, const Eigen::Matrix2d& b) { return a.cwis
 
 }  // namespace
 
-KernelLoss::KernelLoss(const Symbol& symbol, const std::vector<const StaticSample*>& samples,
+KernelLoss::KernelLoss(const WaveOperator& symbol, const std::vector<const StaticSample*>& samples,
                        const std::vector<double>& weight)
     : uu_(symbol.waves(), Eigen::Matrix2d::Zero()), ub_(uu_) {
   std::vector<double> load(samples.size()), length(samples.size());
@@ -54,11 +54,11 @@ KernelLoss::KernelLoss(const Symbol& symbol, const std::vector<const StaticSampl
 }
 
 // tr(S uu S) - 2 tr(S ub) + bb, of which S uu + uu S - ub - ub^T is the slope by S.
-double KernelLoss::at(double lambda, double mu, const Symbol::Parts& parts, Symbol::Parts* slopes,
+double KernelLoss::at(double lambda, double mu, const WaveOperator::Parts& parts, WaveOperator::Parts* slopes,
                       double* by_lambda, double* by_mu) const {
   double sum = bb_;
   for (size_t k = 0; k < uu_.size(); ++k) {
-    const Eigen::Matrix2d S = Symbol::matrix(lambda, mu, parts, k), Su = S * uu_[k];
+    const Eigen::Matrix2d S = WaveOperator::matrix(lambda, mu, parts, k), Su = S * uu_[k];
     sum += plain(Su, S) - 2 * plain(S, ub_[k]);
     if (!slopes) continue;
     const Eigen::Matrix2d by = Su + Su.transpose() - ub_[k] - ub_[k].transpose();
@@ -76,7 +76,7 @@ Kernel kernel_of(const Unknowns& x, double horizon) {
   return {(x[0] - x[1]) * kTera, x[1] * kTera, x[2], {x.begin() + 3, x.end()}, horizon};
 }
 
-KernelProblem::KernelProblem(const Symbol& symbol, const KernelLoss& loss, const KernelInput& input)
+KernelProblem::KernelProblem(const WaveOperator& symbol, const KernelLoss& loss, const KernelInput& input)
     : symbol_(symbol),
       loss_(loss),
       input_(input),
@@ -85,10 +85,10 @@ KernelProblem::KernelProblem(const Symbol& symbol, const KernelLoss& loss, const
 // The slopes of all constraints, each times its own factor.
 struct KernelProblem::Slopes {
   const std::vector<double>* factor;
-  Symbol::Parts* parts;
+  WaveOperator::Parts* parts;
 };
 
-std::vector<double> KernelProblem::constraints(const Symbol::Parts& parts, Slopes* slopes) const {
+std::vector<double> KernelProblem::constraints(const WaveOperator::Parts& parts, Slopes* slopes) const {
   std::vector<double> out;
   for (size_t k = 0; k < symbol_.waves(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
@@ -146,10 +146,10 @@ double KernelProblem::at(const Unknowns& x, double* slope) const {
   Eigen::MatrixXd by_unknowns;
   const Eigen::VectorXd K = symbol_.kernel_at(kernel.alpha, kernel.D, slope ? &by_unknowns : nullptr);
   const Eigen::VectorXd kappa = symbol_.kappa(K);
-  const Symbol::Parts parts = symbol_.parts(kappa);
+  const WaveOperator::Parts parts = symbol_.parts(kappa);
   if (slope) std::fill(slope, slope + x.size(), 0.0);
-  Symbol::Parts slopes{Eigen::Matrix2Xd::Zero(2, parts.s.cols()),
-                       std::vector<Eigen::Matrix2d>(parts.G.size(), Eigen::Matrix2d::Zero())};
+  WaveOperator::Parts slopes{Eigen::Matrix2Xd::Zero(2, parts.s.cols()),
+                             std::vector<Eigen::Matrix2d>(parts.G.size(), Eigen::Matrix2d::Zero())};
   double by_lambda = 0, by_mu = 0, by_weighted = 0;
   double sum = loss_.at(lambda, mu, parts, slope ? &slopes : nullptr, &by_lambda, &by_mu);
   if (penalty > 0) {
@@ -251,7 +251,7 @@ Unknowns start(int degree, uint64_t draw) {
 KernelFit fit_kernel(const Grid& grid, const std::vector<StaticSample>& training,
                      const std::vector<StaticSample>& validation, const KernelInput& input,
                      const KernelSearch& of) {
-  const Symbol symbol(grid, of.horizon);
+  const WaveOperator symbol(grid, of.horizon);
   const KernelLoss loss(symbol, all_of(training), drawn(training.size(), of.draw));
   const KernelLoss beside(symbol, all_of(validation), std::vector<double>(validation.size(), 1));
   KernelProblem problem(symbol, loss, input);
@@ -262,7 +262,7 @@ KernelFit fit_kernel(const Grid& grid, const std::vector<StaticSample>& training
   KernelFit out;
   const auto residual = [&](const KernelLoss& loss_of) {
     const Kernel k = kernel_of(x, of.horizon);
-    const Symbol::Parts parts = symbol.parts(symbol.kappa(symbol.kernel_at(k.alpha, k.D)));
+    const WaveOperator::Parts parts = symbol.parts(symbol.kappa(symbol.kernel_at(k.alpha, k.D)));
     return std::sqrt(std::max(0.0, loss_of.at(k.lambda / kTera, k.mu / kTera, parts)));
   };
   const auto look = [&] {

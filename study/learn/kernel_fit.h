@@ -3,7 +3,7 @@
 // by an augmented Lagrangian (M. J. D. Powell; R. T. Rockafellar, 1973) around NLopt's L-BFGS.
 #pragma once
 
-#include "study/learn/symbol.h"
+#include "study/learn/wave_operator.h"
 
 namespace cuboct::learn {
 
@@ -11,10 +11,10 @@ namespace cuboct::learn {
 class KernelLoss {
  public:
   // `weight`: of each sample. InputError where one has no load, or a number that is not finite.
-  KernelLoss(const Symbol& symbol, const std::vector<const StaticSample*>& samples,
+  KernelLoss(const WaveOperator& symbol, const std::vector<const StaticSample*>& samples,
              const std::vector<double>& weight);
   // Adds its slopes to `slopes` and to those by lambda and mu, in 1/TPa, where they are given.
-  double at(double lambda, double mu, const Symbol::Parts& parts, Symbol::Parts* slopes = nullptr,
+  double at(double lambda, double mu, const WaveOperator::Parts& parts, WaveOperator::Parts* slopes = nullptr,
             double* by_lambda = nullptr, double* by_mu = nullptr) const;
 
  private:
@@ -28,7 +28,7 @@ Kernel kernel_of(const Unknowns& unknowns, double horizon);
 
 class KernelProblem {
  public:
-  KernelProblem(const Symbol& symbol, const KernelLoss& loss, const KernelInput& input);
+  KernelProblem(const WaveOperator& symbol, const KernelLoss& loss, const KernelInput& input);
 
   // Loss and regularisation, with its slope; the multipliers' terms where `multipliers` is given.
   double at(const Unknowns& unknowns, double* slope) const;
@@ -41,9 +41,9 @@ class KernelProblem {
  private:
   double regularisation(const Unknowns& unknowns, double weighted, double* by_weighted, double* slope) const;
   struct Slopes;
-  std::vector<double> constraints(const Symbol::Parts& parts, Slopes* slopes) const;
+  std::vector<double> constraints(const WaveOperator::Parts& parts, Slopes* slopes) const;
 
-  const Symbol& symbol_;
+  const WaveOperator& symbol_;
   const KernelLoss& loss_;
   const KernelInput& input_;
   double scale_;  // m^4, of sum K W r^2 for K = 1

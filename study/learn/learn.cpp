@@ -11,10 +11,10 @@
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
-#include "study/interrupted.h"
-#include "study/kept_lines.h"
 #include "study/learn/field_text.h"
-#include "study/work.h"
+#include "study/sweep/interrupted.h"
+#include "study/sweep/kept_lines.h"
+#include "study/sweep/work.h"
 
 namespace cuboct::learn {
 namespace {
@@ -98,7 +98,8 @@ Learned learn(const LearnStudy& study, const std::string& directory, int jobs) {
   Learned out;
   out.grid = grid_of(study, sheet, study.grid.points);
   out.atoms = sheet.x.size();
-  for (const double horizon : study.kernel.horizons) Symbol(out.grid, horizon);  // refuses before the work
+  for (const double horizon : study.kernel.horizons)
+    WaveOperator(out.grid, horizon);  // refuses before the work
   const std::vector<StaticLoad> loads = static_loads(study, sheet);
   const std::vector<StaticSample> samples = samples_of(study, sheet, loads, directory, jobs);
   for (size_t k = 0; k < loads.size(); ++k) {

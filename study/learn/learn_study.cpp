@@ -11,7 +11,7 @@
 #include "model/base/atom_units.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
-#include "model/scene/file_kind.h"
+#include "model/config/file_kind.h"
 
 namespace cuboct::learn {
 namespace {

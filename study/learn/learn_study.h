@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "model/bond_order/tersoff_parameters.h"
+#include "model/atoms/bond_order/tersoff_parameters.h"
 
 namespace cuboct::learn {
 

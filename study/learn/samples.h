@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/coarse/coarse_grain.h"
 #include "model/base/atom_units.h"
 #include "model/base/error.h"
 #include "model/base/vec.h"
-#include "model/bond_order/atom_cell.h"
-#include "model/coarse/coarse_grain.h"
 #include "study/learn/learn_study.h"
 
 namespace cuboct::learn {

@@ -6,10 +6,10 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "model/atoms/bond_order/atom_motion.h"
 #include "model/base/error.h"
 #include "model/base/places.h"
-#include "model/bond_order/atom_motion.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "study/learn/samples.h"
 
 namespace cuboct::learn {

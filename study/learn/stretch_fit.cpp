@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "model/base/interrupt.h"
-#include "study/interrupted.h"
+#include "study/sweep/interrupted.h"
 
 namespace cuboct::learn {
 namespace {

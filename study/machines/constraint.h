@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "study/machines/quantity.h"
 
 namespace cuboct::study {

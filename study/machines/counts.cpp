@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "emu/lattice/engine.h"
-#include "emu/lattice/kicks.h"
-#include "emu/lattice/timing.h"
+#include "emu/timing/kicks.h"
+#include "emu/timing/timing.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"

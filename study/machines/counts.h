@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What machines of one scene do in the steps that are counted. Machines that differ in nothing that a bit
-// depends on share one run: the timing model (emu/lattice/timing.h) of each looks at the same particles.
+// depends on share one run: the timing model (emu/timing/timing.h) of each looks at the same particles.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "hw/cycles.h"
-#include "hw/events.h"
-#include "hw/setup.h"
-#include "study/settings.h"
+#include "hw/cost/cycles.h"
+#include "hw/cost/events.h"
+#include "hw/plan/setup.h"
+#include "study/sweep/settings.h"
 
 namespace cuboct::study {
 

@@ -11,10 +11,10 @@
 #include <set>
 
 #include "model/base/quantity_text.h"
-#include "study/chart_axes.h"
 #include "study/machines/machine_table.h"
-#include "study/numbers.h"
-#include "study/series.h"
+#include "study/report/chart_axes.h"
+#include "study/sweep/numbers.h"
+#include "study/sweep/series.h"
 
 namespace cuboct::study {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The charts of a study of machines, described once for page and gnuplot (study/chart.h).
+// The charts of a study of machines, described once for page and gnuplot (study/report/chart.h).
 #pragma once
 
 #include <vector>
 
-#include "study/chart.h"
 #include "study/machines/machine_runner.h"
 #include "study/machines/peers.h"
+#include "study/report/chart.h"
 
 namespace cuboct::study {
 

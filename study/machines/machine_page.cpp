@@ -8,9 +8,9 @@
 
 #include "model/base/json.h"
 #include "model/base/text.h"
-#include "study/chart_json.h"
 #include "study/machines/machine_table.h"
-#include "study/web.h"
+#include "study/report/chart_json.h"
+#include "study/report/web.h"
 
 namespace cuboct::study {
 namespace {

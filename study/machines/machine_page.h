@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a study of machines, like that of study/page.h.
+// The page of a study of machines, like that of study/report/page.h.
 #pragma once
 
 #include <string>

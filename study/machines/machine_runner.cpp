@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "hw/energy.h"
-#include "hw/memory_traffic.h"
+#include "hw/cost/energy.h"
+#include "hw/cost/memory_traffic.h"
 #include "model/base/error_parts.h"
 #include "model/base/hash.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
-#include "study/interrupted.h"
-#include "study/work.h"
+#include "study/sweep/interrupted.h"
+#include "study/sweep/work.h"
 
 namespace cuboct::study {
 namespace {

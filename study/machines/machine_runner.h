@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "study/kept_lines.h"
 #include "study/machines/counts.h"
 #include "study/machines/machine_study.h"
-#include "study/runner.h"
+#include "study/sweep/kept_lines.h"
+#include "study/sweep/runner.h"
 
 namespace cuboct::study {
 
@@ -29,7 +29,7 @@ struct MachineFinding {
   std::string why;  // no machine: the reason, on one line
   uint32_t nodes = 0, particles = 0, cells = 0;
   double pairs_per_step = 0;  // of the node that has most
-  ExpectedCycles expected;    // hw/cycles.h
+  ExpectedCycles expected;    // hw/cost/cycles.h
   std::optional<MachineCounts> counts;
   bool screened = false;  // counted for fewer steps than the study's: what it is good for is a guess
   std::vector<MachineValue> values;  // by measure (measure_names)
@@ -51,7 +51,7 @@ struct MachineRunnerOptions {
 };
 
 // Counts are kept as they come: the same calls after a kill give the same findings to the last bit. Throws
-// Interrupted (study/interrupted.h).
+// Interrupted (study/sweep/interrupted.h).
 class MachineRunner {
  public:
   MachineRunner(const MachineStudy& study, MachineRunnerOptions options);

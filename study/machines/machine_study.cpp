@@ -10,9 +10,9 @@
 
 #include "model/base/error_parts.h"
 #include "model/base/hash.h"
-#include "model/scene/file_kind.h"
-#include "study/axes.h"
-#include "study/study_frame.h"
+#include "model/config/file_kind.h"
+#include "study/sweep/axes.h"
+#include "study/sweep/study_frame.h"
 
 namespace cuboct::study {
 namespace {

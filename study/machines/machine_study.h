@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "hw/technology.h"
+#include "hw/cost/technology.h"
 #include "study/machines/constraint.h"
-#include "study/study.h"
+#include "study/sweep/study.h"
 
 namespace cuboct::study {
 

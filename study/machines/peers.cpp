@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/machines/peers.h"
 
-#include "model/scene/config.h"
+#include "model/config/config.h"
 
 namespace cuboct::study {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hw/technology.h"
+#include "hw/cost/technology.h"
 
 namespace cuboct::study {
 

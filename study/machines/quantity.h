@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hw/technology.h"
+#include "hw/cost/technology.h"
 #include "model/base/units.h"
 
 namespace cuboct::study {

@@ -22,13 +22,13 @@
 #include <vector>
 
 #include "emu/lattice/engine.h"
-#include "emu/lattice/kicks.h"
-#include "emu/lattice/timing.h"
-#include "emu/machine/plain.h"
+#include "emu/machine/loop_bench.h"
 #include "emu/systemc/node.h"
-#include "hw/energy.h"
-#include "hw/rtl_emit.h"
-#include "hw/setup.h"
+#include "emu/timing/kicks.h"
+#include "emu/timing/timing.h"
+#include "hw/cost/energy.h"
+#include "hw/plan/setup.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/json.h"
 
 namespace cuboct {
@@ -194,7 +194,7 @@ int run(std::span<char*> arguments) {
   };
   emu::RunOptions options;
   options.steps = steps + 1;  // so that no node dumps before the window of all ends
-  emu::run_plain(plan, initial, options, factory, "record_nodes");
+  emu::run_loop_bench(plan, initial, options, factory, "record_nodes");
   const Technology technology = read_technology(arguments[2]);
   std::vector<std::string> told;
   for (uint32_t n : nodes)

@@ -3,8 +3,8 @@
 // latency and take a beat every so many cycles; their bits against golden's.
 #include <gtest/gtest.h>
 
-#include "emu/lattice/timing.h"
 #include "emu/systemc/node.h"
+#include "emu/timing/timing.h"
 #include "model/base/error.h"
 #include "tests/backend/clocked_timing.h"
 #include "tests/backend/engines.h"
@@ -50,10 +50,10 @@ TEST(BoardsTiming, EqualsTheClockedNode) {
   }
 }
 
-TEST(Boards, CutLinksLeadToOtherDevices) {
+TEST(DeviceCut, CutLinksLeadToOtherDevices) {
   const Case c = with_boards(make_case("periodic_27"), {{2, 3, 1}, 1, 1});
   const Plan& plan = c.setup.plan;
-  const BoardMap map(plan.lattice, plan.bricks, plan.arch.boards);
+  const DeviceMap map(plan.lattice, plan.bricks, plan.arch.boards);
   EXPECT_EQ(map.devices, 6u);
   for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (int f = 0; f < kFaces; ++f)
@@ -69,7 +69,7 @@ TEST(Boards, CutLinksLeadToOtherDevices) {
   EXPECT_EQ(whole.hash, make_case("periodic_27").setup.plan.hash);
 }
 
-TEST(Boards, AreRefusedWithChecks) {
+TEST(DeviceCut, AreRefusedWithChecks) {
   const Plan plan = with_boards(make_case("undamped_2x2x2"), {{1, 1, 1}, 3, 2}).setup.plan;
   Arch arch = plan.arch;
   arch.link_check = LinkCheck::retry;
@@ -93,8 +93,8 @@ TEST(BoardsTiming, LeavesGoldensBits) {
     for (const double stalls : {0.0, 0.2}) {
       const Compared compared =
           compare(c.setup.plan, golden,
-                  run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps, stalls, seed),
-                            emu::native_nodes(c.setup.plan), "plain"));
+                  run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps, stalls, seed),
+                                 emu::native_nodes(c.setup.plan), "plain"));
       ASSERT_EQ(compared.difference, "") << c.name;
       slots += compared.slots;
     }

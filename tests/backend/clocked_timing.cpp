@@ -7,9 +7,9 @@
 #include <bit>
 #include <random>
 
-#include "emu/lattice/kicks.h"
-#include "emu/lattice/timing.h"
 #include "emu/systemc/node.h"
+#include "emu/timing/kicks.h"
+#include "emu/timing/timing.h"
 #include "tests/backend/engines.h"
 
 namespace cuboct::test {
@@ -111,7 +111,7 @@ std::string difference(const Case& c, Seen& seen, int threads) {
   const Plan& plan = c.setup.plan;
   emu::RunOptions options;
   options.steps = c.steps;
-  const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
+  const Trace trace = run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
   const uint32_t nodes = plan.nodes();
 
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
@@ -226,7 +226,7 @@ Case on_boards(Case c, uint64_t seed) {
   const auto draw = [&random](int low, int high) {
     return low + static_cast<int>(random() % static_cast<uint64_t>(high - low + 1));
   };
-  Boards boards;
+  DeviceCut boards;
   for (int a = 0; a < 3; ++a) boards.nodes[a] = draw(1, 3);
   boards.latency = std::array{1, draw(2, 9), draw(10, 80)}[static_cast<size_t>(draw(0, 2))];
   boards.interval = std::array{1, draw(2, 4), draw(5, 40)}[static_cast<size_t>(draw(0, 2))];

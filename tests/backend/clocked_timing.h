@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "emu/lattice/slots.h"
+#include "emu/timing/slots.h"
 #include "model/contract/golden.h"
 #include "tests/support/cases.h"
 

@@ -2,9 +2,9 @@
 // The cycles that `check` expects against those that the machine takes.
 #include <gtest/gtest.h>
 
-#include "emu/machine/plain.h"
+#include "emu/machine/loop_bench.h"
 #include "emu/systemc/node.h"
-#include "hw/cycles.h"
+#include "hw/cost/cycles.h"
 #include "tests/support/block.h"
 
 namespace cuboct::test {
@@ -17,7 +17,7 @@ double machine_over_ideal(const Setup& setup, uint32_t steps, double tolerance =
   emu::RunOptions options;
   options.steps = steps;
   const Trace trace =
-      run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
+      run_loop_bench(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
   uint64_t last = 0;
   for (const PhaseSpan& span : trace.cycles) last = std::max(last, span.end);
   const double actual = static_cast<double>(last + 1) / steps;

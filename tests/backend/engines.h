@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "emu/machine/plain.h"
-#include "hw/setup.h"
+#include "emu/machine/loop_bench.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct::test {
 

@@ -37,13 +37,13 @@ std::string sabotage(const Case& c, const Sabotaged::Act& act) {
   };
   const GoldenRun golden = run_golden(c.setup, c.steps);
   return compare(c.setup.plan, golden,
-                 run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps), factory, "sabotaged"))
+                 run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps), factory, "sabotaged"))
       .difference;
 }
 
 std::string with_other_plan(const Case& c, const Plan& other) {
   return compare(c.setup.plan, run_golden(c.setup, c.steps),
-                 run_plain(other, c.setup.initial, keep_all(c.steps), emu::native_nodes(other), "other"))
+                 run_loop_bench(other, c.setup.initial, keep_all(c.steps), emu::native_nodes(other), "other"))
       .difference;
 }
 
@@ -187,7 +187,7 @@ TEST(Mutation, ALatePhaseIsSeen) {
   Plan other = c.setup.plan;
   other.latency.pipe += 1;
   const auto run = [&](const Plan& plan, const char* name) {
-    return run_plain(plan, c.setup.initial, keep_all(c.steps), emu::native_nodes(plan), name);
+    return run_loop_bench(plan, c.setup.initial, keep_all(c.steps), emu::native_nodes(plan), name);
   };
   const auto right = run(c.setup.plan, "right"), late = run(other, "late");
   EXPECT_EQ(compare_cycles(right, run(c.setup.plan, "again")).difference, "");

@@ -15,8 +15,8 @@ namespace cuboct::test {
 namespace {
 
 emu::RunResult run_native(const Case& c, double stall_rate = 0, uint64_t stall_seed = 1) {
-  return run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps, stall_rate, stall_seed),
-                   emu::native_nodes(c.setup.plan), "plain");
+  return run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps, stall_rate, stall_seed),
+                        emu::native_nodes(c.setup.plan), "plain");
 }
 
 int moves(const GoldenRun& golden) {

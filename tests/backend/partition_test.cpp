@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hw/partition.h"
+#include "hw/plan/partition.h"
 #include "model/base/error.h"
 #include "tests/support/cases.h"
 
@@ -41,7 +41,7 @@ source = "a table"
 )";
 constexpr double kClock = 100e6;
 
-BoardLinkKind wires() { return parse_board_links(kLinks, "links.toml").at(0); }
+DeviceLinkKind wires() { return parse_board_links(kLinks, "links.toml").at(0); }
 
 // Its first line, without the hint.
 template <typename Act>
@@ -61,7 +61,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(BoardLinkKinds, AreReadWithTheirSources) {
-  const BoardLinkKind kind = wires();
+  const DeviceLinkKind kind = wires();
   EXPECT_EQ(kind.name, "wires");
   EXPECT_EQ(kind.lanes(), 96u);
   EXPECT_DOUBLE_EQ(kind.bits_per_cycle(kClock), 4);

@@ -106,8 +106,9 @@ void expect_as_in_golden(const Case& c, Fault fault) {
   const GoldenRun golden = run_golden(c.setup, c.steps);
   for (const double rate : {0.0, 0.4}) {
     const auto options = keep_all(c.steps, rate);
-    const auto rtl = run_plain(plan, c.setup.initial, options, emu::verilated_nodes(plan, kCache), "rtl");
-    const auto native = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain");
+    const auto rtl =
+        run_loop_bench(plan, c.setup.initial, options, emu::verilated_nodes(plan, kCache), "rtl");
+    const auto native = run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain");
     EXPECT_EQ(compare(plan, golden, rtl).difference, "");
     ASSERT_TRUE(rtl.trace.stop);
     EXPECT_EQ(rtl.trace.stop->fault, fault);
@@ -150,8 +151,8 @@ TEST(RtlMutation, AnotherTableIsSeen) {
   const Case c = make_case("undamped_2x2x2");
   Case other = c;
   for (int32_t& word : other.setup.plan.rule.force.c0) word += 1;
-  const auto run = run_plain(c.setup.plan, c.setup.initial, keep_all(c.steps),
-                             emu::verilated_nodes(c.setup.plan, kCache), "rtl");
+  const auto run = run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps),
+                                  emu::verilated_nodes(c.setup.plan, kCache), "rtl");
   EXPECT_EQ(compare(c.setup.plan, run_golden(c.setup, c.steps), run).difference, "");
   EXPECT_EQ(compare(c.setup.plan, run_golden(other.setup, c.steps), run).difference.substr(0, 17),
             "step 1: particle ");
@@ -204,7 +205,7 @@ std::string place_of(const std::string& assertion) {
 TEST(RtlAssertion, EndsThePlainRunWithNodeCycleAndLine) {
   const Case c = make_case("undamped_2x2x2");
   try {
-    run_plain(c.setup.plan, c.setup.initial, keep_all(5), one_flooded(c.setup.plan), "rtl");
+    run_loop_bench(c.setup.plan, c.setup.initial, keep_all(5), one_flooded(c.setup.plan), "rtl");
     FAIL() << "no assertion failed";
   } catch (const std::runtime_error& e) {
     EXPECT_EQ(std::string(e.what()), "node 1 (1,0,0), cycle 60: the assertion of the RTL at " +
@@ -283,7 +284,7 @@ void expect_equal_to_wired_nodes(const Case& c) {
   EXPECT_EQ(with_golden.difference, "");
   EXPECT_EQ(with_golden.steps, c.steps + 1);
   const auto wired =
-      run_plain(plan, c.setup.initial, keep_all(c.steps), emu::verilated_nodes(plan, kCache), "rtl");
+      run_loop_bench(plan, c.setup.initial, keep_all(c.steps), emu::verilated_nodes(plan, kCache), "rtl");
   const Compared with_wired = compare_cycles(wired, whole);
   EXPECT_EQ(with_wired.difference, "");
   EXPECT_EQ(with_wired.spans, c.steps * plan.nodes() * kPhases);

@@ -32,10 +32,11 @@ TEST_P(SystemC, EqualsGoldenAndThePlainLoop) {
     EXPECT_EQ(compared.slots, (c.steps + 1) * c.setup.initial.particles.size());
   }
   const uint64_t spans = c.steps * plan.nodes() * kPhases;
-  const Compared with_plain = compare_cycles(a, run_plain(plan, c.setup.initial, free, nodes, "plain"));
+  const Compared with_plain = compare_cycles(a, run_loop_bench(plan, c.setup.initial, free, nodes, "plain"));
   EXPECT_EQ(with_plain.difference, "");
   EXPECT_EQ(with_plain.spans, spans);
-  const Compared with_stalled = compare_cycles(b, run_plain(plan, c.setup.initial, stalled, nodes, "plain"));
+  const Compared with_stalled =
+      compare_cycles(b, run_loop_bench(plan, c.setup.initial, stalled, nodes, "plain"));
   EXPECT_EQ(with_stalled.difference, "");
   EXPECT_EQ(with_stalled.spans, spans);
   EXPECT_EQ(a.trace.cycles == b.trace.cycles, plan.nodes() == 1);
@@ -71,9 +72,9 @@ TEST(SystemCBricks, EqualGoldenAndThePlainLoop) {
     const Compared compared = compare(plan, run_golden(c.setup, c.steps), run);
     EXPECT_EQ(compared.difference, "") << c.name;
     EXPECT_EQ(compared.steps, c.steps + 1);
-    const Compared with_plain =
-        compare_cycles(run, run_plain(plan, c.setup.initial, keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7),
-                                      emu::native_nodes(plan), "plain"));
+    const Compared with_plain = compare_cycles(
+        run, run_loop_bench(plan, c.setup.initial, keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7),
+                            emu::native_nodes(plan), "plain"));
     EXPECT_EQ(with_plain.difference, "") << c.name;
     EXPECT_EQ(with_plain.spans, c.steps * plan.nodes() * kPhases);
   }
@@ -81,7 +82,7 @@ TEST(SystemCBricks, EqualGoldenAndThePlainLoop) {
 
 // Links between devices: nodes of each kind, in one simulation, without and with stalls.
 TEST(SystemCBoards, EqualGoldenAndThePlainLoop) {
-  const std::vector<std::pair<std::string, Boards>> boards{
+  const std::vector<std::pair<std::string, DeviceCut>> boards{
       {"undamped_2x2x2", {{1, 2, 1}, 1, 1}}, {"undamped_2x2x2", {{1, 2, 1}, 13, 3}},
       {"arrival_ring", {{1, 1, 1}, 9, 5}},   {"arrival_two", {{2, 2, 2}, 17, 3}},
       {"brick_serial", {{1, 1, 1}, 12, 2}},  {"flat_ring", {{2, 1, 1}, 9, 4}}};
@@ -107,7 +108,7 @@ TEST(SystemCBoards, EqualGoldenAndThePlainLoop) {
     EXPECT_EQ(compared.steps, c.steps + 1);
     const auto options = keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7);
     const Compared with_plain =
-        compare_cycles(run, run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain"));
+        compare_cycles(run, run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain"));
     EXPECT_EQ(with_plain.difference, "") << c.name;
     EXPECT_EQ(with_plain.spans, c.steps * plan.nodes() * kPhases);
   }

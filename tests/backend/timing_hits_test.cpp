@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "emu/lattice/hits.h"
+#include "emu/timing/hits.h"
 #include "model/contract/lattice.h"
 
 namespace cuboct::test {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "emu/lattice/engine.h"
-#include "emu/lattice/timing.h"
 #include "emu/systemc/node.h"
+#include "emu/timing/timing.h"
 #include "model/contract/golden.h"
 #include "model/scene/scene.h"
 #include "tests/backend/clocked_timing.h"
@@ -195,7 +195,8 @@ TEST(TimingEngine, EqualsTheClockedNode) {
     const Plan& plan = c.setup.plan;
     emu::RunOptions options;
     options.steps = c.steps;
-    const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
+    const Trace trace =
+        run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
     const auto& particles = c.setup.initial.particles;
     emu::LatticeEngine engine(plan, 0, static_cast<uint32_t>(particles.size()),
                               [&](uint32_t k) { return particles[k]; }, {});
@@ -261,7 +262,7 @@ TEST(TimingModel, CountsTheDump) {
   const Plan& plan = c.setup.plan;
   const Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
   emu::RunOptions options;
-  const Trace trace = run_plain(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
+  const Trace trace = run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
   EXPECT_EQ(static_cast<double>(emu::TimingModel(plan, 1).cycles(slots_of(plan.rule, golden))),
             trace.counters.at(0).second);
 }

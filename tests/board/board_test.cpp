@@ -4,10 +4,10 @@
 
 #include "emu/board/session.h"
 #include "emu/machine/collector.h"
-#include "emu/machine/plain.h"
+#include "emu/machine/loop_bench.h"
 #include "emu/machine/words.h"
 #include "emu/systemc/node.h"
-#include "hw/board.h"
+#include "hw/rtl/board.h"
 #include "tests/board/simulated_board.h"
 
 namespace cuboct::test {
@@ -28,7 +28,7 @@ uint64_t cycles_of(const cuboct::Setup& setup, uint64_t steps) {
   options.steps = steps;
   options.frames = {steps};
   const Trace trace =
-      emu::run_plain(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
+      emu::run_loop_bench(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
   std::vector<uint64_t> dumped(trace.nodes);
   for (const Particle& p : trace.frames.back().particles) ++dumped[p.cell];
   uint64_t last = 0;

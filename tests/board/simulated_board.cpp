@@ -7,7 +7,7 @@
 #include <sstream>
 #include <thread>
 
-#include "hw/rtl_emit.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/contract/golden.h"
 #include "model/trace/compare.h"
 

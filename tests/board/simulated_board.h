@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "emu/board/session.h"
-#include "hw/board.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
+#include "hw/rtl/board.h"
 #include "model/base/process.h"
 #include "model/trace/trace.h"
 

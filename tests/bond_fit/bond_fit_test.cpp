@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/bond_fit/bond_fit.h"
+#include "study/potential_fit/bond_fit.h"
 
 #include <cmath>
 

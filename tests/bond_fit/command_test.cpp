@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "model/bond_order/tersoff_parameters.h"
-#include "model/scene/config.h"
+#include "model/atoms/bond_order/tersoff_parameters.h"
+#include "model/config/config.h"
 #include "tests/bond_fit/silicon_problem.h"
 #include "tests/cli/shell.h"
 

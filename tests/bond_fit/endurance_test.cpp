@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What lives and what does not: published silicon, and each way to fail.
-#include "study/bond_fit/endurance.h"
+#include "study/potential_fit/endurance.h"
 
 #include <gtest/gtest.h>
 
-#include "study/interrupted.h"
+#include "study/sweep/interrupted.h"
 
 namespace cuboct::bond_fit {
 namespace {

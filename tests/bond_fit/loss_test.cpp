@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/bond_fit/loss.h"
+#include "study/potential_fit/loss.h"
 
 #include <cmath>
 

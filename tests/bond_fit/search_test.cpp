@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "study/bond_fit/search.h"
+#include "study/potential_fit/search.h"
 
-#include "study/bond_fit/granular_search.h"
+#include "study/potential_fit/granular_search.h"
 #include "tests/bond_fit/silicon_problem.h"
 
 namespace cuboct::bond_fit::test {

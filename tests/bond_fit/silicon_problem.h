@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-#include "study/bond_fit/bond_fit.h"
+#include "study/potential_fit/bond_fit.h"
 
 namespace cuboct::bond_fit::test {
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "model/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_cell.h"
 
 namespace cuboct {
 namespace {

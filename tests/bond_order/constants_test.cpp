@@ -2,7 +2,7 @@
 // Constants of crystals under published sets, beside those that LAMMPS computed.
 #include <gtest/gtest.h>
 
-#include "model/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_cell.h"
 
 namespace cuboct {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Exact properties of diamond, and their slopes by the parameters, beside forces of atoms and differences.
-#include "model/bond_order/diamond_properties.h"
+#include "model/atoms/bond_order/diamond_properties.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/diamond_strain.h"
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/diamond_strain.h"
 
 namespace cuboct {
 namespace {

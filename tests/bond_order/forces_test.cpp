@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "model/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_cell.h"
 
 namespace cuboct {
 namespace {

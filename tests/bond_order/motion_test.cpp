@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/atom_motion.h"
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_motion.h"
 
 namespace cuboct {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <fstream>
 
+#include "model/atoms/bond_order/tersoff_parameters.h"
 #include "model/base/error.h"
-#include "model/bond_order/tersoff_parameters.h"
 
 namespace cuboct {
 namespace {

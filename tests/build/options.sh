@@ -43,11 +43,11 @@ says "ccache: not used, as CUBOCT_CCACHE is OFF"
 says "mold: not used, as CUBOCT_MOLD is OFF"
 if grep -q 'ccache\|mold' "$work"/build/{build.ninja,CMakeFiles/rules.ninja}; then echo "ccache or mold is used"; exit 1; fi
 
-# Nothing found. The tree stands there by links, so that study/web can be without node_modules.
-mkdir -p "$work/bare/study/web" "$work/pkgconfig"
+# Nothing found. The tree stands there by links, so that study/report/web can be without node_modules.
+mkdir -p "$work/bare/study/report/web" "$work/pkgconfig"
 ln -s "$root"/[!.]* "$work/bare" 2>/dev/null || true
 ln -s "$root"/study/* "$work/bare/study" 2>/dev/null || true
-ln -s "$root"/study/web/*.* "$work/bare/study/web"
+ln -s "$root"/study/report/web/*.* "$work/bare/study/report/web"
 for folder in $(tr : ' ' <<<"$(pkg-config --variable pc_path pkg-config)"); do
   [ ! -e "$folder/libhwy.pc" ] || cp "$folder/libhwy.pc" "$work/pkgconfig"
 done
@@ -72,7 +72,7 @@ lacks _cuboct cuboct_fit cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl uni
 configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_DISABLE_FIND_PACKAGE_pagmo=ON -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd -DCUBOCT_MKDOCS=/bin/true
 says "Compiler launcher, as given: env"
 says "Linker, as given: -fuse-ld=bfd"
-says "Studies: without their page, as study/web/node_modules is missing: run tools/setup, or npm ci --ignore-scripts in study/web"
+says "Studies: without their page, as study/report/web/node_modules is missing: run tools/setup, or npm ci --ignore-scripts in study/report/web"
 says "Fits: left out, as pagmo (libpagmo-dev) is not found"
 has cuboct cuboct_study unit_tests study_tests docs
 lacks cuboct_fit fit_tests web_tests systemc_tests program_tests link_rtl_tests

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "tests/cli/refusal.h"
 
 namespace cuboct::test {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 #include "hw/program/program.h"
 #include "model/contract/golden.h"
 #include "tests/support/replay_engine.h"

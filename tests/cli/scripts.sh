@@ -37,7 +37,7 @@ done
 printf '#!/bin/sh\necho v16.20.2\n' >"$fakes/node"
 chmod +x "$fakes"/*
 if said=$(PATH=$fakes:$PATH tools/setup 2>&1) ||
-  [ "$said" != "tools/setup: $fakes/node is v16.20.2; study/web needs Node.js 18 or later" ]; then
+  [ "$said" != "tools/setup: $fakes/node is v16.20.2; study/report/web needs Node.js 18 or later" ]; then
   echo "tools/setup with an old node: $said"
   exit 1
 fi

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/base/output.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Coarse-graining across cracks, in two and three dimensions: sums that must balance, linear fields, and a
 // jump that is known.
-#include "model/coarse/coarse_grain.h"
+#include "model/atoms/coarse/coarse_grain.h"
 
 #include <gtest/gtest.h>
 

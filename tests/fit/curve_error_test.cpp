@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/fit/curve_error.h"
+#include "study/law_fit/curve_error.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "model/contract/law.h"
-#include "study/fit/drawn_law.h"
+#include "study/law_fit/drawn_law.h"
 
 namespace cuboct::fit {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/fit/evolution.h"
+#include "study/law_fit/evolution.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "study/fit/fit.h"
+#include "study/law_fit/fit.h"
 
 #include "model/base/error.h"
 #include "model/base/output.h"
-#include "study/fit/curve_error.h"
+#include "study/law_fit/curve_error.h"
 #include "tests/fit/small_fit.h"
 
 namespace cuboct::fit::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/fit/packing_pull.h"
+#include "study/law_fit/packing_pull.h"
 
 #include <gtest/gtest.h>
 

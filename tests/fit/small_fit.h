@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-#include "study/fit/fit.h"
+#include "study/law_fit/fit.h"
 
 namespace cuboct::fit::test {
 

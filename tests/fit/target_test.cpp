@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Curves that are read, and those that are refused, word for word.
-#include "study/fit/target.h"
+#include "study/law_fit/target.h"
 
 #include "model/base/error.h"
 #include "tests/fit/small_fit.h"

@@ -9,8 +9,8 @@
 #include <cstdlib>
 
 #include "emu/lattice/run.h"
-#include "hw/engine_kind.h"
-#include "hw/setup.h"
+#include "hw/engine/engine_kind.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct {
 namespace {

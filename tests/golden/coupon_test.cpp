@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/analysis/measure.h"
 #include "model/analysis/strain.h"
 #include "model/contract/golden.h"

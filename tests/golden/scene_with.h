@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "emu/lattice/run.h"
-#include "hw/setup.h"
-#include "model/scene/changes.h"
+#include "hw/plan/setup.h"
+#include "model/config/changes.h"
 
 namespace cuboct::test {
 

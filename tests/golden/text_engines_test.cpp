@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "emu/lattice/run.h"
-#include "hw/engine_kind.h"
-#include "hw/setup.h"
+#include "hw/engine/engine_kind.h"
+#include "hw/plan/setup.h"
 #include "model/run/checkpoint.h"
 #include "model/scene/scene.h"
 

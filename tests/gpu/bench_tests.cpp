@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-#include "gpu_ref/bench_report.h"
+#include "emu/gpu/bench/bench_report.h"
 #include "model/base/error.h"
 #include "model/base/process.h"
 #include "tests/gpu/fake_clock.h"

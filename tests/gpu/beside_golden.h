@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu_ref/engine.h"
+#include "emu/gpu/engine.h"
 #include "tests/support/cases.h"
 
 namespace cuboct::test {

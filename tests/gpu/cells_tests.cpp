@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Where the gpu engines store particles, and what they refuse before they ask for memory.
-#include "gpu_ref/cells.h"
+#include "emu/gpu/cells.h"
 
 #include <gtest/gtest.h>
 
 #include <regex>
 #include <set>
 
-#include "gpu_ref/grid_view.h"
-#include "gpu_ref/messages.h"
+#include "emu/gpu/grid_view.h"
+#include "emu/gpu/messages.h"
 #include "model/base/error.h"
 #include "tests/support/dice.h"
 

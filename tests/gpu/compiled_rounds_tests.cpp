@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "gpu_ref/nvrtc.h"
-#include "gpu_ref/rounds_engine.h"
-#include "gpu_ref/rounds_kernel.h"
-#include "gpu_ref/rounds_text.h"
-#include "hw/engine_kind.h"
+#include "emu/gpu/rounds/nvrtc.h"
+#include "emu/gpu/rounds/rounds_engine.h"
+#include "emu/gpu/rounds/rounds_kernel.h"
+#include "emu/gpu/rounds/rounds_text.h"
+#include "hw/engine/engine_kind.h"
 #include "model/base/output.h"
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"

@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "gpu_ref/engine.h"
-#include "gpu_ref/particle.h"
+#include "emu/gpu/engine.h"
+#include "emu/gpu/particle.h"
 #include "model/base/error.h"
 #include "tests/gpu/beside_golden.h"
 #include "tests/support/block.h"
@@ -125,7 +125,7 @@ TEST(FixedDrift, HoldsGoldensBits) {
   EXPECT_EQ(met.faults, 0u);
 }
 
-// The limits of gpu_ref/fixed_policy.h, which an arch does not reach.
+// The limits of emu/gpu/fixed/fixed_policy.h, which an arch does not reach.
 TEST(FixedWidths, BeyondTheEnginesAreRefused) {
   Case c = make_case("damped");
   const auto refusal = [&](int position_frac, int guard) {

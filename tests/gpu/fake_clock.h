@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "gpu_ref/meter_clock.h"
+#include "emu/gpu/bench/meter_clock.h"
 
 namespace cuboct::gpu {
 

@@ -10,8 +10,8 @@
 #include <functional>
 #include <string>
 
-#include "gpu_ref/rounds_engine.h"
-#include "gpu_ref/rounds_text.h"
+#include "emu/gpu/rounds/rounds_engine.h"
+#include "emu/gpu/rounds/rounds_text.h"
 #include "model/base/output.h"
 
 namespace cuboct::test {

@@ -6,9 +6,9 @@
 #include <complex>
 #include <numbers>
 
+#include "emu/gpu/bench/bench_rows.h"
 #include "emu/lattice/run.h"
-#include "gpu_ref/bench_rows.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/analysis/measure.h"
 #include "model/real/reference.h"
 #include "model/scene/scene.h"

@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "gpu_ref/lps_compare.h"
-#include "gpu_ref/lps_layout.h"
+#include "emu/gpu/lps/lps_compare.h"
+#include "emu/gpu/lps/lps_layout.h"
 #include "model/base/error.h"
 #include "model/real/rounds_engine.h"
 #include "model/rules/lps.h"
@@ -111,11 +111,12 @@ TEST(Lps, DamageNeverFalls) {
 
 TEST(Lps, WithoutBreakingNothingBreaks) {
   Scene scene = plate("");
-  const auto* rule = dynamic_cast<const LpsRule*>(rounds_of(scene.rule));
+  const auto* rule = dynamic_cast<const LpsRule*>(scene.rule.rounds.get());
   ASSERT_NE(rule, nullptr);
   LpsMaterial material = rule->material();
   material.critical_stretch = std::numeric_limits<double>::infinity();
-  scene.rule.law = rounds_law(material.horizon, std::make_shared<LpsRule>(material, rule->full()));
+  scene.rule.rounds = std::make_shared<LpsRule>(material, rule->full());
+  scene.rule.rounds_reach = material.horizon;
   Beside beside(std::move(scene), true);
   const LpsErrors off = beside.after(0, 60);
   EXPECT_EQ(beside.damaged(), 0u);
@@ -139,9 +140,8 @@ TEST(Lps, KindsAreThoseOfThePacking) {
   scene.body.type.resize(more.size(), 0);
   for (size_t i = before; i < more.size(); ++i) scene.body.v[i] = scene.body.v[i % before];
   scene.body.x = more;
-  const auto* rule = dynamic_cast<const LpsRule*>(rounds_of(scene.rule));
-  scene.rule.law =
-      rounds_law(rule->material().horizon, std::make_shared<LpsRule>(rule->material(), rule->full()));
+  const auto* rule = dynamic_cast<const LpsRule*>(scene.rule.rounds.get());
+  scene.rule.rounds = std::make_shared<LpsRule>(rule->material(), rule->full());
   Beside shaken(std::move(scene), true);
   EXPECT_GT(shaken.device->kinds(), 65536u);
   EXPECT_LT(shaken.after(0, 10).velocity, 1e-9);

@@ -2,7 +2,7 @@
 // Devices that do their work in any order that events allow: no order may show in the bits.
 #include <gtest/gtest.h>
 
-#include "gpu_ref/device.h"
+#include "emu/gpu/device/device.h"
 #include "model/contract/law.h"
 #include "tests/fcc_block.h"
 #include "tests/gpu/beside_golden.h"

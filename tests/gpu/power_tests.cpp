@@ -8,7 +8,7 @@
 #include <functional>
 #include <memory>
 
-#include "gpu_ref/power.h"
+#include "emu/gpu/bench/power.h"
 #include "tests/gpu/fake_clock.h"
 #include "tests/gpu/fake_nvml.h"
 

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "gpu_ref/run.h"
+#include "emu/gpu/run.h"
 #include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 #include "tests/support/file_limit.h"
@@ -389,13 +389,13 @@ TEST_F(GpuProgram, StandsAlone) {
 TEST(GpuLooks, AreAllOrAFew) {
   std::vector<uint64_t> probes;
   for (uint64_t k = 0; k <= 1000; ++k) probes.push_back(10 * k);
-  EXPECT_EQ(gpu::looks_of(probes, 1000), probes);
-  const auto few = gpu::looks_of(probes, 10'000'000);  // 1001 looks would be 1e10 particles
+  EXPECT_EQ(gpu::watch_steps(probes, 1000), probes);
+  const auto few = gpu::watch_steps(probes, 10'000'000);  // 1001 looks would be 1e10 particles
   EXPECT_EQ(few.size(), 5u);
   EXPECT_EQ(few.front(), 0u);
   EXPECT_EQ(few[1], 2010u);
-  EXPECT_TRUE(gpu::looks_of({}, 1000).empty());
-  EXPECT_EQ(gpu::looks_of({0, 7}, 1'000'000'000), (std::vector<uint64_t>{0, 7}));
+  EXPECT_TRUE(gpu::watch_steps({}, 1000).empty());
+  EXPECT_EQ(gpu::watch_steps({0, 7}, 1'000'000'000), (std::vector<uint64_t>{0, 7}));
 }
 
 TEST_F(GpuProgram, SaysHowARuleOfTextRuns) {

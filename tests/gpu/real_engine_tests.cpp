@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "gpu_ref/engine.h"
+#include "emu/gpu/engine.h"
 #include "model/analysis/measure.h"
 #include "model/base/error.h"
 #include "model/contract/law.h"

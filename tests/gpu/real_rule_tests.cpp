@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Pair kicks in floats and doubles against the pair law in doubles, within bounds by rounding analysis.
-#include "gpu_ref/real_rule.h"
+#include "emu/gpu/real/real_rule.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "gpu_ref/real_tables.h"
+#include "emu/gpu/real/real_tables.h"
 #include "model/base/error.h"
 #include "tests/gpu/laws.h"
 

@@ -4,8 +4,8 @@
 
 #include <numeric>
 
-#include "gpu_ref/energy_table.h"
-#include "gpu_ref/real_tables.h"
+#include "emu/gpu/real/energy_table.h"
+#include "emu/gpu/real/real_tables.h"
 #include "model/analysis/measure.h"
 #include "model/real/reference.h"
 #include "tests/gpu/laws.h"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "gpu_ref/rounds_engine.h"
-#include "hw/engine_kind.h"
+#include "emu/gpu/rounds/rounds_engine.h"
+#include "hw/engine/engine_kind.h"
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "model/trace/compare.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The run loop around an engine that a test makes up: it drifts, and loses a particle when it is told to.
-#include "gpu_ref/run.h"
-#include "gpu_ref/rounds_engine.h"
+#include "emu/gpu/run.h"
+#include "emu/gpu/rounds/rounds_engine.h"
 
 #include <gtest/gtest.h>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct::gpu {
 namespace {

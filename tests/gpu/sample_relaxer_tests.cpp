@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The samples of a study's elements by a device's kernels, compiled for the host, beside those of the host
 // itself.
-#include "gpu_ref/sample_relaxer.h"
+#include "emu/gpu/samples/sample_relaxer.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <random>
 
+#include "model/atoms/multiscale/element_study.h"
+#include "model/atoms/multiscale/tersoff_law.h"
 #include "model/base/error.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
-#include "model/multiscale/element_study.h"
-#include "model/multiscale/tersoff_law.h"
 #include "model/run/element_run.h"
 
 namespace cuboct::gpu {

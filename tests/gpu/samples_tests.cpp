@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Samples in blocks' memory, compiled for the host, beside the potential in doubles that
 // tests/peer/tersoff_test.cpp compares with LAMMPS.
-#include "gpu_ref/samples.h"
+#include "emu/gpu/samples/samples.h"
 
 #include <gtest/gtest.h>
 

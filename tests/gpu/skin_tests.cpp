@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The skin's choice on made-up matter: how many entries a list has and how long it serves are functions of
 // the skin.
-#include "gpu_ref/skin.h"
+#include "emu/gpu/skin.h"
 
 #include <gtest/gtest.h>
 

@@ -65,7 +65,7 @@ class Library {
     const auto dir = std::filesystem::path(testing::TempDir()) / "emitted_graphs";
     std::filesystem::create_directories(dir);
     write_text((dir / "graphs.cpp").string(),
-               "#include \"gpu_ref/rounds_table.h\"\n#include \"model/graph/integer_ops.h\"\n"
+               "#include \"emu/gpu/rounds/rounds_table.h\"\n#include \"model/graph/integer_ops.h\"\n"
                "namespace cuboct {\n" +
                    source + "}\n");
     const std::string command =

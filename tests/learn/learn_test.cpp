@@ -22,9 +22,9 @@ Grid square_grid(int points) { return {points, Vec3(5e-10, 5.03e-10, 0), 3.35e-1
 // On waves S u is the force density of the engine's rule with the opposite sign. With P = 0 and alpha = 1 the
 // kernel is the rule's influence of power 1. The rule divides by its integral of w r^2, whose quadrature is
 // exact here: w r^2 = r^4/r^3.
-TEST(Symbol, IsTheOperatorOfTheEngine) {
+TEST(WaveOperator, IsTheOperatorOfTheEngine) {
   const Grid grid = square_grid(12);
-  const Symbol symbol(grid, 3);
+  const WaveOperator symbol(grid, 3);
   const Kernel kernel{-0.2e12, 0.7e12, 1, {1}, 3};
   LpsMaterial material;
   material.dimensions = 2, material.lambda = kernel.lambda, material.mu = kernel.mu;
@@ -42,11 +42,11 @@ TEST(Symbol, IsTheOperatorOfTheEngine) {
   terms->begin(x);
   for (const size_t round : {0, 1}) terms->pair(round, 0, x.size(), true), terms->finish(round, 0, x.size());
   const auto force = symbol.waves_of(terms->force()), moved = symbol.waves_of(u);
-  const Symbol::Parts parts = symbol.parts(symbol.kappa(symbol.kernel_at(kernel.alpha, kernel.D)));
+  const WaveOperator::Parts parts = symbol.parts(symbol.kappa(symbol.kernel_at(kernel.alpha, kernel.D)));
   double size = 0, off = 0;
   for (size_t k = 0; k < symbol.waves(); ++k) {
     const Eigen::Vector2cd expected =
-        -Symbol::matrix(kernel.lambda, kernel.mu, parts, k) * moved[k] * grid.volume();
+        -WaveOperator::matrix(kernel.lambda, kernel.mu, parts, k) * moved[k] * grid.volume();
     size = std::max(size, force[k].norm()), off = std::max(off, (force[k] - expected).norm());
   }
   EXPECT_GT(size, 0);
@@ -82,7 +82,7 @@ std::vector<StaticSample> elastic(const Grid& grid, double lambda, double mu, in
 
 TEST(KernelProblem, HasTheSlopesOfItsDifferences) {
   const Grid grid = square_grid(12);
-  const Symbol symbol(grid, 3);
+  const WaveOperator symbol(grid, 3);
   const auto samples = elastic(grid, -0.2e12, 0.7e12, 2);
   std::vector<const StaticSample*> all;
   for (const StaticSample& sample : samples) all.push_back(&sample);
@@ -129,8 +129,8 @@ TEST(FitKernel, RefusesWhatItCannotLearnFrom) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "sample 1 has no load, or a number that is not finite");
   }
-  EXPECT_THROW(Symbol(grid, 1.1), InputError);
-  EXPECT_THROW(Symbol(grid, 6), InputError);
+  EXPECT_THROW(WaveOperator(grid, 1.1), InputError);
+  EXPECT_THROW(WaveOperator(grid, 6), InputError);
 }
 
 class LearnCommand : public testing::Test {

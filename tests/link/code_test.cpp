@@ -7,8 +7,8 @@
 
 #include "emu/machine/words.h"
 #include "emu/systemc/link_guard.h"
-#include "hw/link_code.h"
-#include "model/scene/config.h"
+#include "hw/arch/link_code.h"
+#include "model/config/config.h"
 #include "tests/support/cases.h"
 #include "tests/support/dice.h"
 

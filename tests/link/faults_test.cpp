@@ -12,7 +12,7 @@ namespace {
 using emu::FaultKind;
 
 emu::RunResult run(const Case& c, const emu::RunOptions& options) {
-  return run_plain(c.setup.plan, c.setup.initial, options, emu::native_nodes(c.setup.plan), "plain");
+  return run_loop_bench(c.setup.plan, c.setup.initial, options, emu::native_nodes(c.setup.plan), "plain");
 }
 
 // The states that a run that stopped on a link did reach are golden's.

@@ -58,7 +58,7 @@ TEST_P(LinkRtl, MeetsFaultsAsTheNativeNodeDoes) {
   emu::Bench systemc("native", plan, c.setup.initial, options, native, "systemc");
   emu::Bench rtl("rtl", plan, c.setup.initial, options, verilated, "rtl");
   emu::simulate({&systemc, &rtl});
-  const emu::RunResult plain = run_plain(plan, c.setup.initial, options, native, "plain"),
+  const emu::RunResult plain = run_loop_bench(plan, c.setup.initial, options, native, "plain"),
                        s = systemc.take_result(), r = rtl.take_result();
   EXPECT_EQ(compare_cycles(plain, s).difference, "");
   EXPECT_EQ(compare_cycles(s, r).difference, "");
@@ -85,7 +85,7 @@ TEST_P(LinkRtl, SpeaksTheNativeNodesCode) {
     const Cell& cell = plan.lattice.cell(node);
     return (cell[0] + cell[1] + cell[2]) % 2 != 0 ? verilated(node, has_link) : native(node, has_link);
   };
-  const emu::RunResult got = run_plain(plan, c.setup.initial, keep_all(c.steps), mixed, "mixed");
+  const emu::RunResult got = run_loop_bench(plan, c.setup.initial, keep_all(c.steps), mixed, "mixed");
   EXPECT_EQ(compare(plan, run_golden(c.setup, c.steps), got).difference, "");
 }
 

@@ -7,10 +7,10 @@
 
 #include <string>
 
-#include "emu/machine/plain.h"
+#include "emu/machine/loop_bench.h"
 #include "emu/systemc/node.h"
 #include "emu/verilated/verilated_node.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/contract/golden.h"
 
 namespace {
@@ -70,7 +70,7 @@ int study(int argc, char** argv) {
   for (uint64_t seed = 0; seed < runs; ++seed) {
     options.faults.count = 1;
     options.faults.seed = seed;
-    const emu::RunResult run = emu::run_plain(plan, setup.initial, options, nodes, engine);
+    const emu::RunResult run = emu::run_loop_bench(plan, setup.initial, options, nodes, engine);
     tally.counts.flips += run.faults.flips;
     tally.counts.drops += run.faults.drops;
     tally.counts.repeats += run.faults.repeats;

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "model/atoms/multiscale/element_motion.h"
+#include "model/atoms/multiscale/element_stiffness.h"
 #include "model/base/error.h"
-#include "model/multiscale/element_motion.h"
-#include "model/multiscale/element_stiffness.h"
 #include "model/solid/moduli.h"
 #include "tests/multiscale/springs.h"
 

@@ -4,8 +4,8 @@
 
 #include <numeric>
 
+#include "model/atoms/multiscale/element_body.h"
 #include "model/base/error.h"
-#include "model/multiscale/element_body.h"
 #include "tests/multiscale/springs.h"
 
 namespace cuboct {

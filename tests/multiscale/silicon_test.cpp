@@ -7,11 +7,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "model/atoms/multiscale/element_stiffness.h"
+#include "model/atoms/multiscale/stretch.h"
+#include "model/atoms/multiscale/tersoff_law.h"
+#include "model/atoms/multiscale/wave.h"
 #include "model/base/error.h"
-#include "model/multiscale/element_stiffness.h"
-#include "model/multiscale/stretch.h"
-#include "model/multiscale/tersoff_law.h"
-#include "model/multiscale/wave.h"
 
 namespace cuboct {
 namespace {

@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "model/atoms/multiscale/sample_material.h"
+#include "model/atoms/multiscale/shell_springs.h"
 #include "model/base/error.h"
-#include "model/multiscale/sample_material.h"
-#include "model/multiscale/shell_springs.h"
 #include "model/solid/moduli.h"
 
 namespace cuboct {

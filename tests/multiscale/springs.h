@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "model/multiscale/atomic_sample.h"
+#include "model/atoms/multiscale/atomic_sample.h"
 
 namespace cuboct::test {
 

@@ -12,10 +12,10 @@
 #include <set>
 #include <sstream>
 
+#include "model/atoms/multiscale/mesh_file.h"
 #include "model/base/error.h"
-#include "model/multiscale/mesh_file.h"
+#include "model/config/config.h"
 #include "model/run/element_run.h"
-#include "model/scene/config.h"
 
 namespace cuboct {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "model/analysis/strained_cell.h"
+#include "model/body/packing.h"
 #include "model/contract/law.h"
-#include "model/scene/packing.h"
 #include "model/solid/moduli.h"
 #include "tests/fcc_block.h"
 #include "tests/peer/lammps.h"

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/analysis/measure.h"
 #include "model/real/reference.h"
 

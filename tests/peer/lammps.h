@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "model/bond_order/atom_box.h"
+#include "model/atoms/bond_order/atom_box.h"
 #include "model/contract/rule.h"
 
 namespace cuboct::test {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "emu/lattice/run.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "tests/peer/blocks.h"
 #include "tests/peer/lammps.h"
 

@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/diamond_properties.h"
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/diamond_properties.h"
 #include "tests/peer/lammps.h"
 
 namespace cuboct {

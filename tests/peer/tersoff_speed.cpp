@@ -10,8 +10,8 @@
 #include <random>
 #include <string>
 
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/atom_motion.h"
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_motion.h"
 
 namespace cuboct {
 namespace {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Atom-steps per second of LAMMPS and of model/bond_order on one core each: the same atoms, the same steps of velocity
+# Atom-steps per second of LAMMPS and of model/atoms/bond_order on one core each: the same atoms, the same steps of velocity
 # Verlet at constant energy, in doubles.
 #
 #   tersoff_speed.sh PROGRAM [MATTER...]     PROGRAM: tersoff_speed of the build; MATTER: sheet silicon silicon_1988 (all)

@@ -9,8 +9,8 @@
 
 #include <random>
 
-#include "model/bond_order/atom_cell.h"
-#include "model/bond_order/atom_motion.h"
+#include "model/atoms/bond_order/atom_cell.h"
+#include "model/atoms/bond_order/atom_motion.h"
 #include "tests/peer/lammps.h"
 
 namespace cuboct {

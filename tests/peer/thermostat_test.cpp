@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "emu/lattice/run.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "tests/peer/blocks.h"
 #include "tests/peer/lammps.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct::test {
 

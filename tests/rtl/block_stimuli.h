@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "hw/plan.h"
+#include "hw/plan/plan.h"
 
 namespace cuboct::test {
 

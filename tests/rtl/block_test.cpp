@@ -15,7 +15,7 @@
 
 #include "emu/verilated/compile.h"
 #include "emu/verilated/sources.h"
-#include "hw/rtl_emit.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/fixed_math.h"
 #include "model/contract/law.h"
 #include "tests/rtl/block_lanes.h"

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "hw/rtl_emit.h"
+#include "hw/rtl/rtl_emit.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "emu/lattice/engine.h"
-#include "emu/lattice/kicks.h"
-#include "emu/lattice/timing.h"
-#include "hw/memory_traffic.h"
+#include "emu/timing/kicks.h"
+#include "emu/timing/timing.h"
+#include "hw/cost/memory_traffic.h"
 #include "tests/support/cases.h"
 
 int main(int argc, char** argv) {

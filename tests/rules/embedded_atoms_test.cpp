@@ -292,7 +292,7 @@ TEST(EmbeddedAtoms, AnAtomBeyondTheTableIsNamed) {
 
 TEST(EmbeddedAtoms, TheHashBindsTheFile) {
   const auto text_hash = [](const std::string& potential) {
-    for (const DeclarationLine& line : rounds_of(metal_scene(potential, 3.615, 3).rule)->settings())
+    for (const DeclarationLine& line : metal_scene(potential, 3.615, 3).rule.rounds->settings())
       if (line.name == "text") return line.text;
     return std::string();
   };

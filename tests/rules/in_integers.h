@@ -41,8 +41,8 @@ struct InIntegers {
       for (int32_t y = 0; y < count[1]; ++y)
         for (int32_t x = 0; x < count[0]; ++x) cells.push_back({x, y, z});
     lattice = Lattice(std::move(cells), Cell{});
-    program = integer_program(*rounds_of(rule)->text(), fixed, capacity,
-                              starts_of(*rounds_of(rule)->text(), rule, scene.body, scene.periodic));
+    program = integer_program(*rule.rounds->text(), fixed, capacity,
+                              starts_of(*rule.rounds->text(), rule, scene.body, scene.periodic));
   }
   ProgramSetting setting() const { return {program, fixed, lattice, origin, room}; }
   IntegerRun run() const { return {scene, setting(), program_beginning(scene, setting())}; }

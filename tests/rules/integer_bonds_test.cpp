@@ -57,12 +57,12 @@ Golden golden_of(const InIntegers& made, const ProgramStart& start) {
   const IntegerProgram& program = made.program;
   for (size_t i = 0; i < state.particles.size(); ++i)
     for (size_t f = 0; f < program.field.size(); ++f) {
-      const ProgramField& field = rounds_of(made.scene.rule)->text()->particle[program.field[f]];
+      const ProgramField& field = made.scene.rule.rounds->text()->particle[program.field[f]];
       for (uint32_t n = 0; n < field.numbers(); ++n)
         state.fields.push_back(
             std::llround(std::ldexp(start.particle[field.first + n][i], program.scales[f].frac)));
     }
-  state.bonds = bond_numbers(program, *rounds_of(made.scene.rule)->text(), start);
+  state.bonds = bond_numbers(program, *made.scene.rule.rounds->text(), start);
   return {program.program, made.lattice, made.room, state, program.rows};
 }
 
@@ -84,7 +84,7 @@ TEST(IntegerBonds, ACrackIsThatOfDoubles) {
 
 TEST(IntegerBonds, BothEndsHoldTheSameAndMomentumIsKept) {
   const InIntegers made(kSpringsText);
-  const RuleProgram& text = *rounds_of(made.scene.rule)->text();
+  const RuleProgram& text = *made.scene.rule.rounds->text();
   Golden golden = golden_of(made, starts_of(text, made.scene.rule, made.scene.body, made.scene.periodic));
   const Int3 before = momentum(made.fixed, golden.state());
   const graph::BondRows& rows = *made.program.rows;

@@ -150,7 +150,7 @@ TEST(LpsScene, WhatCannotBeIsRefusedAtItsKey) {
 
 TEST(LpsScene, EnginesOfPairsRefuseIt) {
   const Scene scene = parse_scene(scene_with(""), "plate");
-  ASSERT_NE(rounds_of(scene.rule), nullptr);
+  ASSERT_NE(scene.rule.rounds.get(), nullptr);
   EXPECT_THROW(refuse_rounds(scene.rule, "the lattice engine"), InputError);
   EXPECT_THROW(RoundsRun(scene, scene.body, RealOptions{.precision = Precision::float32}, 1e-3), InputError);
 }

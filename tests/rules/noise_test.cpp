@@ -262,8 +262,7 @@ TEST(Noise, MakesBondsUneven) {
                              "sum.force = \"1 kN/m * (r - r0 - set) * d / r\"\n";
   EXPECT_EQ(integer_refusal(uneven), "none");
   const Scene scene = scene_with_noise(uneven);
-  const ProgramStart start =
-      starts_of(*rounds_of(scene.rule)->text(), scene.rule, scene.body, scene.periodic);
+  const ProgramStart start = starts_of(*scene.rule.rounds->text(), scene.rule, scene.body, scene.periodic);
   const auto [least, most] = std::ranges::minmax(start.bond[1]);
   EXPECT_NEAR(least, 1e-5 * (1 - 0.1 * std::numbers::sqrt3), 1e-8);
   EXPECT_NEAR(most, 1e-5 * (1 + 0.1 * std::numbers::sqrt3), 1e-8);

@@ -18,7 +18,8 @@ struct Parting {
   explicit Parting(double critical_stretch) {
     LpsMaterial m = test::cubic_material();
     m.critical_stretch = critical_stretch;
-    rule.law = rounds_law(m.horizon, std::make_shared<LpsRule>(m, simple_cubic_bonds(1, 3)));
+    rule.rounds = std::make_shared<LpsRule>(m, simple_cubic_bonds(1, 3));
+    rule.rounds_reach = m.horizon;
     rule.mass = 1, rule.dt = 0.05;
     rule.types = {{}};
     rule.strength = {{1}};

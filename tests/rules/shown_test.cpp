@@ -81,7 +81,7 @@ TEST(Shown, FramesHaveWhatTheRuleShowsOfTheirState) {
   const RealFrame frame = std::get<RealFrame>(run.frame(false));
   ASSERT_EQ(frame.shown.size(), 2u);
   // The dilatation of these positions with these bonds: by a second look at the state alone.
-  const auto* rounds = rounds_of(scene.rule);
+  const auto* rounds = scene.rule.rounds.get();
   const auto terms = rounds->bind(scene.rule, scene.packing(), scene.periodic, 1);
   recall_bonds(*terms, *run.saved_body());
   terms->begin(frame.x);

@@ -7,8 +7,8 @@
 #include <fstream>
 
 #include "model/analysis/motion.h"
+#include "model/atoms/bond_order/atom_motion.h"
 #include "model/base/error.h"
-#include "model/bond_order/atom_motion.h"
 #include "model/rules/tersoff_rule.h"
 #include "model/run/rounds_run.h"
 #include "model/run/static_engine.h"
@@ -312,7 +312,7 @@ TEST(TersoffScene, TheExampleTears) {
 
 TEST(TersoffScene, ItsRoundsAreDeclared) {
   const Scene scene = parse_scene(carbon(kSheet), "s");
-  const RuleDeclaration& rule = rounds_of(scene.rule)->declaration();
+  const RuleDeclaration& rule = scene.rule.rounds->declaration();
   EXPECT_EQ(rule.bonds, BondRange::current);
   ASSERT_EQ(rule.rounds.size(), 2u);
   EXPECT_EQ(rule.rounds[1].exchanged, std::vector<std::string>{"partial"});

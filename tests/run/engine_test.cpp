@@ -11,9 +11,9 @@
 
 #include "model/base/interrupt.h"
 #include "model/base/steps.h"
+#include "model/config/config.h"
 #include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
-#include "model/scene/config.h"
 #include "tests/run/kinds.h"
 
 namespace cuboct::test {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/run/kinds.h"
 
-#include "emu/machine/plain.h"
+#include "emu/machine/loop_bench.h"
 #include "emu/systemc/node.h"
 #include "tests/support/replay_engine.h"
 
@@ -18,7 +18,8 @@ EngineKind machine_kind(const Bed& bed, const RunRequest& request) {
     options.frames = asked_steps(request);
     options.keep_last = asks_for_last(request);
     const State initial = to_fixed(bed.scene.body, bed.plan.rule, bed.plan.lattice, bed.plan.origin);
-    Trace trace = emu::run_plain(bed.plan, initial, options, emu::native_nodes(bed.plan), "systemc").trace;
+    Trace trace =
+        emu::run_loop_bench(bed.plan, initial, options, emu::native_nodes(bed.plan), "systemc").trace;
     return std::make_unique<ReplayEngine>(setting_of(bed.scene, bed.plan), std::move(trace));
   };
   return kind;

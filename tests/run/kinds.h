@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "emu/gpu/run.h"
 #include "emu/lattice/run.h"
-#include "gpu_ref/run.h"
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 
 namespace cuboct::test {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <numeric>
 
-#include "hw/scene_engine.h"
-#include "hw/setup.h"
+#include "hw/engine/scene_engine.h"
+#include "hw/plan/setup.h"
 #include "model/base/steps.h"
 #include "tests/run/kinds.h"
 

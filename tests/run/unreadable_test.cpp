@@ -3,8 +3,8 @@
 // what it has.
 #include <gtest/gtest.h>
 
-#include "hw/scene_engine.h"
-#include "hw/setup.h"
+#include "hw/engine/scene_engine.h"
+#include "hw/plan/setup.h"
 #include "model/base/steps.h"
 #include "tests/run/kinds.h"
 

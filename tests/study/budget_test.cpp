@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/budget.h"
+#include "study/search/budget.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <sstream>
 #include <tuple>
 
-#include "cli/budget.h"
-#include "hw/setup.h"
+#include "cli/study/budget.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
-#include "study/cost.h"
+#include "study/sweep/cost.h"
 
 namespace cuboct::study {
 namespace {

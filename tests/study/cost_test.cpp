@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/cost.h"
+#include "study/sweep/cost.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hw/node_area.h"
-#include "hw/setup.h"
+#include "hw/cost/node_area.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct::study {
 namespace {

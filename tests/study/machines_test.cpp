@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "cli/machine_cycles.h"
+#include "cli/machine/machine_cycles.h"
 #include "study/machines/counts.h"
 #include "study/machines/machine_evolution.h"
 #include "study/machines/machine_front.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/base/error.h"
-#include "study/measure_errors.h"
+#include "study/sweep/measure_errors.h"
 #include "tests/study/small_study.h"
 
 namespace cuboct::study {

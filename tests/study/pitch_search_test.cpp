@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/pitch_search.h"
+#include "study/search/pitch_search.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which figures depend on the samples: cases to check by hand.
-#include "study/sampling.h"
+#include "study/sweep/sampling.h"
 
 #include <gtest/gtest.h>
 

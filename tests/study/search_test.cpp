@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/search.h"
+#include "study/search/search.h"
 
 #include <gtest/gtest.h>
 

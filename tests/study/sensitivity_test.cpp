@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "study/sensitivity.h"
+#include "study/sweep/sensitivity.h"
 
 #include <gtest/gtest.h>
 

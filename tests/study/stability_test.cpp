@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The largest stable time step, measured by bisection on the engines, against the theory of small vibrations.
-#include "study/stability.h"
+#include "study/stability/stability.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "model/base/error.h"
 #include "model/contract/law.h"
 #include "model/solid/dynamical_matrix.h"
-#include "study/stability_map.h"
+#include "study/stability/stability_map.h"
 #include "tests/fcc_block.h"
 
 namespace cuboct::study {

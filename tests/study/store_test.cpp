@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Results on disk: what was put comes back to the last bit, rows of other machines come in, those of other
 // studies do not; a runner computes what lacks and nothing else.
-#include "study/store.h"
+#include "study/sweep/store.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 
 #include "model/base/error.h"
 #include "model/base/output.h"
-#include "study/measure_errors.h"
-#include "study/runner.h"
-#include "study/truth_bytes.h"
+#include "study/sweep/measure_errors.h"
+#include "study/sweep/runner.h"
+#include "study/sweep/truth_bytes.h"
 #include "tests/study/rows.h"
 #include "tests/study/small_study.h"
 

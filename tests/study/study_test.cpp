@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a study file says: points, and mistakes word for word.
-#include "study/study.h"
+#include "study/sweep/study.h"
 
 #include <gtest/gtest.h>
 

@@ -414,7 +414,7 @@ Case with_halos_on_arrival(Case c) {
   return c;
 }
 
-Case with_boards(Case c, const Boards& boards) {
+Case with_boards(Case c, const DeviceCut& boards) {
   Plan& plan = c.setup.plan;
   Arch arch = plan.arch;
   arch.boards = boards;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct::test {
 
@@ -32,7 +32,7 @@ Case with_brick(Case c, const Cell& brick);
 // The same on nodes that use halos on arrival, with two streamers where there are as many lanes.
 Case with_halos_on_arrival(Case c);
 // The same on several devices, without checks of links.
-Case with_boards(Case c, const Boards& boards);
+Case with_boards(Case c, const DeviceCut& boards);
 // Two hot blocks, the second beyond the first by these many cells (signed) along each axis, on a lattice of
 // only those cells that ever hold a particle: what lies between them has none.
 Case lumps(const Vec3& apart);

@@ -10,8 +10,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "hw/rtl_emit.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/process.h"
 #include "synth/elaborate.h"
 #include "synth/fit_model.h"

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "synth/node_estimate.h"
 
 namespace cuboct::synth {

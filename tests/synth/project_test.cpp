@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "hw/rtl_emit.h"
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/error.h"
 #include "model/base/process.h"
 #include "synth/elaborate.h"

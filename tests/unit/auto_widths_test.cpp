@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Formats and capacity that a scene chooses for itself.
-#include "hw/auto_widths.h"
+#include "hw/arch/auto_widths.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/analysis/motion.h"
 #include "model/base/error.h"
 #include "model/contract/golden.h"

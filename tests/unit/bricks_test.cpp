@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Which cells a node with a brick serves, and what a plan refuses of bricks.
-#include "hw/bricks.h"
+#include "hw/arch/bricks.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "hw/arch.h"
-#include "hw/setup.h"
+#include "hw/arch/arch.h"
+#include "hw/plan/setup.h"
 #include "tests/support/block.h"
 
 namespace cuboct::test {

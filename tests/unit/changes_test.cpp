@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "model/scene/changes.h"
+#include "model/config/changes.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 #include "model/base/error.h"
 #include "model/base/input_file.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 
 namespace cuboct {
 namespace {

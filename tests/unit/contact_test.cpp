@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/contract/golden.h"
 #include "model/contract/law.h"
 #include "model/real/reference.h"

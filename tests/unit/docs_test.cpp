@@ -13,16 +13,16 @@
 #include <string>
 #include <vector>
 
-#include "hw/arch.h"
+#include "hw/arch/arch.h"
 #include "model/base/error.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "model/scene/scene.h"
 #ifdef CUBOCT_HAS_STUDIES
 #include "study/machines/machine_study.h"
-#include "study/study.h"
+#include "study/sweep/study.h"
 #endif
 #ifdef CUBOCT_HAS_FITS
-#include "study/fit/fit_study.h"
+#include "study/law_fit/fit_study.h"
 #endif
 
 namespace cuboct {

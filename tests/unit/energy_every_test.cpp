@@ -5,7 +5,7 @@
 #include <string>
 
 #include "model/base/error.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Energy of made counts against sums by hand; what is missing is named; counts that a plan cannot have.
-#include "hw/energy.h"
+#include "hw/cost/energy.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "hw/node_memories.h"
-#include "hw/pair_work.h"
-#include "hw/setup.h"
+#include "hw/cost/node_memories.h"
+#include "hw/cost/pair_work.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct {
 namespace {

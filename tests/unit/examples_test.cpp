@@ -9,12 +9,12 @@
 #include <set>
 #include <vector>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
+#include "model/config/file_kind.h"
 #include "model/contract/golden.h"
 #include "model/contract/neighbours.h"
 #include "model/real/reference.h"
-#include "model/scene/file_kind.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "model/base/error.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 
 namespace cuboct {
 namespace {

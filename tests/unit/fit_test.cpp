@@ -10,8 +10,8 @@
 #include <optional>
 #include <tuple>
 
-#include "hw/fit.h"
-#include "hw/setup.h"
+#include "hw/cost/room_search.h"
+#include "hw/plan/setup.h"
 #include "tests/support/dice.h"
 
 namespace cuboct {

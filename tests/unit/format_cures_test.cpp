@@ -7,8 +7,8 @@
 
 #include <regex>
 
-#include "hw/real_plan.h"
-#include "hw/setup.h"
+#include "hw/plan/real_plan.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/contract/quantise.h"
 

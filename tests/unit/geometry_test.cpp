@@ -8,7 +8,7 @@
 #include <random>
 
 #include "model/base/error.h"
-#include "model/scene/regions.h"
+#include "model/body/regions.h"
 
 namespace cuboct {
 namespace {

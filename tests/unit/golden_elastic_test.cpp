@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/contract/law.h"
 
 namespace cuboct {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Packings of grains: centres and turns by hand and in the mean, cells by brute force, what a boundary
 // leaves out.
-#include "model/scene/grains.h"
+#include "model/body/grains.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 #include <functional>
 #include <string>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/base/module.h"
 #include "model/base/output.h"

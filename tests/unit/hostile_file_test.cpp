@@ -10,7 +10,7 @@
 #include <functional>
 #include <limits>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/base/process.h"
 #include "model/scene/scene.h"

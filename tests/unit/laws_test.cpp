@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/contract/golden.h"
 #include "model/contract/law.h"

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/analysis/measure.h"
 #include "model/analysis/strain.h"
 #include "model/analysis/unstable.h"

@@ -3,7 +3,7 @@
 #ifdef CUBOCT_MESH_DIRECTORY
 #include <cmath>
 
-#include "model/scene/packing.h"
+#include "model/body/packing.h"
 #include "tests/unit/mesh_files.h"
 
 namespace cuboct {

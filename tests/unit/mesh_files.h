@@ -16,7 +16,7 @@
 
 #include "model/base/error.h"
 #include "model/base/process.h"
-#include "model/scene/mesh.h"
+#include "model/body/mesh.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {

@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-#include "model/scene/packing.h"
+#include "model/body/packing.h"
 #include "tests/unit/mesh_files.h"
 
 namespace cuboct {

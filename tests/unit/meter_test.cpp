@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 #include "model/contract/law.h"
 #include "tests/fcc_block.h"
 

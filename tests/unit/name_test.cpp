@@ -2,7 +2,7 @@
 // Names that would fail after a run, or break a frame, are refused where the scene is read.
 #include <gtest/gtest.h>
 
-#include "hw/arch.h"
+#include "hw/arch/arch.h"
 #include "model/base/error.h"
 #include "model/scene/scene.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "model/scene/packing.h"
+#include "model/body/packing.h"
 
 namespace cuboct {
 namespace {

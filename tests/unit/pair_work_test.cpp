@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "hw/pair_work.h"
+#include "hw/cost/pair_work.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "hw/node_area.h"
-#include "hw/setup.h"
+#include "hw/cost/node_area.h"
+#include "hw/plan/setup.h"
 
 namespace cuboct {
 namespace {

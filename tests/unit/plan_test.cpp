@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 
-#include "hw/arch.h"
-#include "hw/left_out.h"
-#include "hw/setup.h"
+#include "hw/arch/arch.h"
+#include "hw/plan/setup.h"
+#include "hw/plan/spared.h"
 #include "model/contract/golden.h"
 #include "model/scene/scene.h"
 #include "tests/support/block.h"
@@ -115,12 +115,12 @@ TEST(Carry, ChangesNoBit) {
 }
 
 // What is said to be saved is what the plan that carries the part has more.
-TEST(LeftOut, IsTheDifferenceToThePlanThatCarriesIt) {
+TEST(Spared, IsTheDifferenceToThePlanThatCarriesIt) {
   int parts = 0;
   for (const Scene& scene : {sheet(), block_scene({.size = {2, 2, 2}, .jitter = 0.05, .speed = 0.1})}) {
     const Plan plain = plan_of(scene, Arch{});
-    const LeftOut left = left_out(plain);
-    for (const LeftOut::Part& part : left.parts) {
+    const Spared left = spared(plain);
+    for (const Spared::Part& part : left.parts) {
       Arch arch;
       arch.carry[part.index] = true;
       arch.carry.types = arch.carry.types || arch.carry.scales;
@@ -136,12 +136,12 @@ TEST(LeftOut, IsTheDifferenceToThePlanThatCarriesIt) {
     EXPECT_EQ(all.words.particle_bits, left.all.particle_bits);
     EXPECT_EQ(all.lattice.size(), left.box);
     EXPECT_EQ(all.lattice.size() - plain.lattice.size(), left.missing);
-    EXPECT_TRUE(left_out(all).parts.empty());
+    EXPECT_TRUE(spared(all).parts.empty());
   }
   EXPECT_GE(parts, 7);
 }
 
-TEST(LeftOut, LooserFormatsAreThoseOfATenthOfTheAccuracy) {
+TEST(Spared, LooserFormatsAreThoseOfATenthOfTheAccuracy) {
   Scene scene = read_scene(kRoot + "/scenes/two_types.toml");
   const Plan plan = plan_of(scene, Arch{});
   const auto looser = looser_formats(scene, plan);

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "emu/lattice/run.h"
-#include "hw/engine_kind.h"
-#include "hw/setup.h"
+#include "hw/engine/engine_kind.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/base/steps.h"
 #include "model/run/reference_engine.h"

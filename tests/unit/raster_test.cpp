@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "model/base/error.h"
-#include "model/scene/geometry.h"
-#include "model/scene/packing.h"
+#include "model/body/geometry.h"
+#include "model/body/packing.h"
 
 namespace cuboct {
 namespace {

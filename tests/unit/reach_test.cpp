@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The reachable cells against their definition, particle by particle and cell by cell.
-#include "hw/reach.h"
+#include "hw/plan/reach.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <map>
 #include <numeric>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/contract/golden.h"
 #include "model/real/reference.h"
 #include "model/scene/scene.h"

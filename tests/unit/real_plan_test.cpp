@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The hash of a run in doubles binds all that moves its particles: a checkpoint of another scene is refused.
-#include "hw/real_plan.h"
+#include "hw/plan/real_plan.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(RealPlan, HashBindsAllThatMovesAScene) {
       "region = { shape = \"half_space\", point = \"[2, 0, 0] mm\", normal = \"-x\" }\n"
       "[run]\ndt = \"10 ns\"\nsteps = 10\n";
   const Scene scene = parse_scene(glass, "glass.toml");
-  ASSERT_NE(rounds_of(scene.rule), nullptr);
+  ASSERT_NE(scene.rule.rounds.get(), nullptr);
   ASSERT_EQ(scene.rule.types.size(), 2u);
   std::set<uint64_t> hashes{real_plan_of(scene, Arch{}).hash};
   EXPECT_EQ(*hashes.begin(), real_plan_of(parse_scene(glass, "other.toml"), Arch{}).hash);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "hw/rtl_emit.h"
-#include "hw/rtl_prefix.h"
-#include "hw/rtl_template.h"
+#include "hw/rtl/rtl_emit.h"
+#include "hw/rtl/rtl_prefix.h"
+#include "hw/rtl/rtl_template.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // A node for each element: its arithmetic is Tersoff's, its operations are those of its formulas by hand, and
 // its energy is their number times the technology's figures.
-#include "hw/sample_node.h"
+#include "study/sample_node/sample_node.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "model/atoms/bond_order/tersoff_parameters.h"
+#include "model/atoms/multiscale/tersoff_law.h"
 #include "model/base/error.h"
-#include "model/bond_order/tersoff_parameters.h"
-#include "model/multiscale/tersoff_law.h"
 
 namespace cuboct {
 namespace {

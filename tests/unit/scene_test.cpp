@@ -11,11 +11,11 @@
 #include <set>
 #include <sstream>
 
-#include "hw/arch.h"
+#include "hw/arch/arch.h"
 #include "model/analysis/measure.h"
 #include "model/base/error.h"
+#include "model/config/config.h"
 #include "model/contract/law.h"
-#include "model/scene/config.h"
 #include "model/scene/scene.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From scenes to plans: with and without a State in memory, and the cells that a body can reach.
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "model/base/error.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <thread>
 
-#include "hw/engine_kind.h"
-#include "hw/setup.h"
+#include "hw/engine/engine_kind.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/base/steps.h"
 #include "model/run/static_engine.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Technology files: what is wrong in one is told at its place; those of the tree are sound.
-#include "hw/technology.h"
+#include "hw/cost/technology.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "model/base/error.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 
 namespace cuboct {
 namespace {

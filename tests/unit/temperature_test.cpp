@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "hw/engine_kind.h"
+#include "hw/engine/engine_kind.h"
 #include "model/base/error.h"
 
 namespace cuboct {

@@ -13,7 +13,7 @@
 #include "model/base/error.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
-#include "model/scene/config.h"
+#include "model/config/config.h"
 #include "tests/support/hostile.h"
 
 namespace cuboct {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "hw/setup.h"
+#include "hw/plan/setup.h"
 #include "model/analysis/expected_strain.h"
 #include "model/analysis/measure.h"
 #include "model/analysis/unstable.h"

@@ -8,8 +8,8 @@
 #include <set>
 #include <sstream>
 
-#include "hw/rtl_ports.h"
-#include "hw/words.h"
+#include "hw/arch/words.h"
+#include "hw/rtl/rtl_ports.h"
 #include "tests/support/block.h"
 
 namespace cuboct {

@@ -206,8 +206,8 @@ Judge::Judge(Case c, std::vector<Run> runs)
   const Plan& plan = case_.setup.plan;
   ports_.assign(runs_.size(), PortRecord(plan.nodes()));
   for (size_t k = 0; k < runs_.size(); ++k)
-    native_.push_back(run_plain(plan, case_.setup.initial, options_of(runs_[k]),
-                                recorded(emu::native_nodes(plan), ports_[k]), "native"));
+    native_.push_back(run_loop_bench(plan, case_.setup.initial, options_of(runs_[k]),
+                                     recorded(emu::native_nodes(plan), ports_[k]), "native"));
 }
 
 Judgement Judge::judge(const std::shared_ptr<const emu::Library>& library) const {
@@ -223,8 +223,8 @@ Judgement Judge::judge(const std::shared_ptr<const emu::Library>& library) const
     };
     emu::RunResult run;
     try {
-      run = run_plain(plan, case_.setup.initial, options_of(runs_[k]),
-                      watched(emitted, ports_[k], result.cycles), "rtl");
+      run = run_loop_bench(plan, case_.setup.initial, options_of(runs_[k]),
+                           watched(emitted, ports_[k], result.cycles), "rtl");
     } catch (const std::bad_alloc&) {
       throw;
     } catch (const std::exception& e) {

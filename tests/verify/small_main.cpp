@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "hw/rtl_emit.h"
+#include "hw/rtl/rtl_emit.h"
 #include "model/base/error.h"
 #include "tests/verify/small_case.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The Pareto front and the table by decades: cases to check by hand, and brute force.
-#include "study/front.h"
+#include "study/search/front.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 // coupon has, for tests of what a report makes of them. They say nothing about cuboct.
 #pragma once
 
-#include "study/store.h"
+#include "study/sweep/store.h"
 
 namespace cuboct::test {
 

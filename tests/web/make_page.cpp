@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "model/base/output.h"
-#include "study/page.h"
+#include "study/report/page.h"
 #include "tests/web/made_up_results.h"
 
 int main(int count, char** arguments) try {

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "model/base/error.h"
-#include "study/gpu_program.h"
-#include "study/measure_errors.h"
-#include "study/measure_speed.h"
+#include "study/sweep/gpu_program.h"
+#include "study/sweep/measure_errors.h"
+#include "study/sweep/measure_speed.h"
 #include "tests/study/small_study.h"
 
 namespace cuboct::study {

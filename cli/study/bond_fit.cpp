@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "cli/study/bond_fit.h"
+
+#include <chrono>
+#include <filesystem>
+
+#include "cli/study/bond_fit_text.h"
+#include "model/base/directory_lock.h"
+#include "model/base/interrupt.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
+#include "study/sweep/interrupted.h"
+
+namespace cuboct {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void draw(const BondFindings& found, const std::string& out) {
+  write_convergence(found, out);
+  try {
+    draw_convergence(found, out);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "no picture: {}\n", error.what());
+  }
+}
+
+void run(const bond_fit::BondStudy& study, const std::string& out, int jobs, const Answer& answer) {
+  const Clock::time_point begin = Clock::now();
+  const bond_fit::BondFitOptions options{.jobs = jobs};
+  const bond_fit::BondFit fit = bond_fit::run_bond_fit(study, out, options);
+  std::vector<bond_fit::Compared> compared;
+  if (study.compare) compared = bond_fit::compare_methods(study, options);
+  const BondFindings found{study, fit, compared, std::chrono::duration<double>(Clock::now() - begin).count()};
+  const Items items = items_of(found);
+  write_bond_tables(found, out);
+  write_text(out + "/summary.json", items.json());
+  if (study.compare) draw(found, out);
+  answer.close(items);
+  if (!fit.best) {
+    std::filesystem::remove(out + "/fitted.tersoff");  // of an earlier run with other starts
+    throw Failed(fmt::format("none of the {} sets that were tried is stable", fit.tried.size()),
+                 "trials.tsv says how each failed; try more sets (fit.tried), or more starts");
+  }
+  write_text(out + "/fitted.tersoff", potential_file(study, fit));
+}
+
+}  // namespace
+
+int fit_bonds(const std::string& path, const std::string& directory, int jobs, const Answer& answer) {
+  const bond_fit::BondStudy study = bond_fit::read_bond_study(path);
+  const std::string out =
+      directory.empty() ? std::filesystem::path(path).stem().string() + ".fit" : directory;
+  const DirectoryLock lock(out, "cuboct fit");
+  check_writable(out + "/summary.json");
+  catch_interrupts();
+  try {
+    run(study, out, jobs, answer);
+  } catch (const study::Interrupted&) {
+    throw Failed("interrupted; the same command goes on where it was");
+  }
+  answer.say("directory {}\n", line_text(out));
+  return 0;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "cli/answer.h"
+#include "cli/command.h"
+#include "cli/study/budget.h"
+#include "cli/study/explore_machines.h"
+#include "hw/program/options.h"
+#include "model/base/directory_lock.h"
+#include "model/base/interrupt.h"
+#include "model/base/json.h"
+#include "model/base/text.h"
+#include "study/machines/machine_study.h"
+#include "study/report/page.h"
+#include "study/report/table.h"
+#include "study/sweep/measure_run.h"
+#include "study/sweep/runner.h"
+
+namespace cuboct {
+namespace {
+
+struct ExploreOptions {
+  std::string study, out, error, figure;
+  std::vector<std::string> add;
+  int jobs = 0;
+  bool no_speed = false;
+  bool best = false, confirm = false;
+  std::string emit;
+  Answer answer;
+};
+
+std::string default_directory(const std::string& study) {
+  return std::filesystem::path(study).stem().string() + ".study";
+}
+
+// Charts need gnuplot; the page does not, but a charting library in the build.
+void report(const study::Results& results, const std::string& out, const std::string& left_out,
+            const Answer& answer) {
+  answer.say("{}\n{}", block_text(study::describe(results.truth, results)),
+             block_text(study::cheapest_per_decade(results)));
+  size_t refused = 0, unstable = 0;
+  for (const study::Outcome& outcome : results.outcomes) {
+    refused += outcome.status == study::Status::refused;
+    unstable += outcome.status == study::Status::unstable;
+  }
+  answer.say("{} points, {} refused, {} unstable\n", results.outcomes.size(), refused, unstable);
+  const std::string page = out + "/page.html";
+  if (study::has_page()) {
+    study::write_page(results, page);
+    answer.say("page: {}\n", line_text(page));
+  } else {
+    fmt::print(stderr,
+               "no page: this cuboct was built without the npm packages of study/report/web\n"
+               "  hint: tools/setup fetches them; then configure and build again\n");
+  }
+  std::vector<std::string> charts;
+  try {
+    charts = study::write_charts(results, out + "/charts");
+    answer.say("charts: {} in {}/charts\n", charts.size(), line_text(out));
+  } catch (const InputError& error) {
+    fmt::print(stderr, "no charts: {}\n", error.what());
+  }
+  answer.close(json_object({{"directory", json(out)},
+                            {"points", std::to_string(results.outcomes.size())},
+                            {"refused", std::to_string(refused)},
+                            {"unstable", std::to_string(unstable)},
+                            {"left_out", left_out.empty() ? "null" : json(left_out)},
+                            {"best", study::cheapest_json(results)},
+                            {"page", study::has_page() ? json(page) : "null"},
+                            {"charts", json(charts)}}));
+}
+
+int explore_machines_of(const ExploreOptions& options) {
+  if (!options.error.empty() || !options.add.empty() || options.no_speed)
+    throw InputError("--error, --figure, --add and --no-speed are of studies of errors",
+                     "a study of machines has constraints = [\"error <= 1%\"]");
+  const bool best = options.best || !options.emit.empty();
+  return explore_machines(
+      {options.study, options.out.empty() ? default_directory(options.study) : options.out, options.jobs,
+       best, options.confirm, options.emit},
+      options.answer);
+}
+
+int explore(const ExploreOptions& options) {
+  if (study::is_machine_study(options.study)) return explore_machines_of(options);
+  if (options.best || options.confirm || !options.emit.empty())
+    throw InputError("--best, --confirm and --emit are of studies of machines",
+                     "give the file a [[machines]]");
+  const study::Study study = study::read_study(options.study);
+  const bool budget = !options.error.empty();
+  if (budget) check_budget(study, options.error, options.figure);
+  if (!budget && !options.figure.empty()) throw InputError("--figure names the figure of --error E");
+  if (!budget && study.points.empty())
+    throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
+                     "--error asks its [search]");
+  const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
+  for (const std::string& file : options.add) study::Store::check(file, study);
+  const DirectoryLock lock(out, "cuboct explore");
+  study::Store store(out + "/results.db", study);
+  catch_interrupts();
+  for (const std::string& file : options.add)
+    options.answer.say("{} rows from {}\n", store.add(file), line_text(file));
+  study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
+  try {
+    if (budget)
+      return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs},
+                        options.answer);
+    runner.run();
+  } catch (const study::Interrupted&) {
+    throw Failed("interrupted; the same command goes on where it was");
+  }
+  if (!runner.left_out().empty())
+    options.answer.say("{}\n  hint: --add FILE takes them from another machine's results.db\n",
+                       line_text(runner.left_out()));
+  report(store.results(), out, runner.left_out(), options.answer);
+  return 0;
+}
+
+}  // namespace
+
+void add_explore(Command& app, int& exit_code) {
+  auto options = std::make_shared<ExploreOptions>();
+  Command command = app.command("explore", "chart a study's settings or machines: errors, speed, energy");
+  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
+  command
+      .option("--out", options->out, "directory for results; default: that of the study's name with .study")
+      .type_name("DIR");
+  command.option("--jobs", options->jobs, "points computed at once; default: one per core")
+      .range(1, 4096)
+      .type_name("N");
+  command.option("--add", options->add, "results of the same study from elsewhere").type_name("FILE");
+  command
+      .option("--error", options->error,
+              "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
+      .type_name("E");
+  command.option("--figure", options->figure, "the figure of --error").type_name("NAME");
+  command.flag("--no-speed", options->no_speed, "measure errors alone");
+  command.flag(
+      "--best", options->best,
+      "of a study of machines: choose the one that keeps all constraints and has the least of what is "
+      "minimised");
+  command.option("--emit", options->emit, "write the RTL project of that machine").type_name("DIR");
+  command.flag("--confirm", options->confirm, "synthesise the machine before it is chosen");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { exit_code = explore(*options); });
+}
+
+}  // namespace cuboct

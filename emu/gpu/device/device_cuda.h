@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+// emu/gpu/device/device.h on CUDA.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+#include <cub/device/device_scan.cuh>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cuboct::gpu {
+
+inline constexpr bool kHasGraphs = true;
+
+inline void check(cudaError_t error, const char* what) {
+  if (error != cudaSuccess)
+    throw std::runtime_error(std::string("CUDA: ") + what + ": " + cudaGetErrorString(error));
+}
+
+class Event {
+ public:
+  Event() = default;
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() {
+    if (event_) cudaEventDestroy(event_);
+  }
+  // Made on the device that first records it.
+  cudaEvent_t make() {
+    if (!event_) check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "make an event");
+    return event_;
+  }
+  cudaEvent_t get() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+class Stream {
+ public:
+  // Kernels of an urgent stream go first where both wait for the device.
+  explicit Stream(int device = 0, bool urgent = false) : device_(device) {
+    activate();
+    int least = 0, greatest = 0;
+    check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "make a stream");
+    check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, urgent ? greatest : least),
+          "make a stream");
+    check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device), "device");
+  }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  ~Stream() { cudaStreamDestroy(stream_); }
+  int device() const { return device_; }
+  int multiprocessors() const { return multiprocessors_; }
+  void activate() const { check(cudaSetDevice(device_), "choose a device"); }
+  void record(Event& event) {
+    activate();
+    check(cudaEventRecord(event.make(), stream_), "record an event");
+  }
+  void wait(const Event& event) {
+    if (event.get()) check(cudaStreamWaitEvent(stream_, event.get()), "wait for an event");
+  }
+  void synchronize() { check(cudaStreamSynchronize(stream_), "run on the device"); }
+  cudaStream_t get() const { return stream_; }
+
+ private:
+  int device_;
+  int multiprocessors_ = 1;
+  cudaStream_t stream_ = nullptr;
+};
+
+// What a stream was asked for between `begin` and `end`, to be launched as a whole.
+class Graph {
+ public:
+  Graph() = default;
+  Graph(const Graph&) = delete;
+  Graph& operator=(const Graph&) = delete;
+  ~Graph() { drop(); }
+  void begin(Stream& stream) {
+    stream.activate();
+    check(cudaStreamBeginCapture(stream.get(), cudaStreamCaptureModeThreadLocal), "begin a graph");
+  }
+  void end(Stream& stream) {
+    drop();
+    cudaGraph_t graph = nullptr;
+    check(cudaStreamEndCapture(stream.get(), &graph), "end a graph");
+    const cudaError_t error = cudaGraphInstantiate(&exec_, graph, 0);
+    cudaGraphDestroy(graph);
+    check(error, "make a graph");
+  }
+  void launch(Stream& stream) { check(cudaGraphLaunch(exec_, stream.get()), "launch a graph"); }
+  bool ready() const { return exec_ != nullptr; }
+  void drop() {
+    if (exec_) cudaGraphExecDestroy(exec_);
+    exec_ = nullptr;
+  }
+
+ private:
+  cudaGraphExec_t exec_ = nullptr;
+};
+
+inline void* allocate(int device, size_t bytes) {
+  void* memory = nullptr;
+  check(cudaSetDevice(device), "choose a device");
+  check(cudaMalloc(&memory, bytes), "allocate device memory");
+  return memory;
+}
+inline void release(int device, void* memory) {
+  if (!memory) return;
+  cudaSetDevice(device);
+  cudaFree(memory);
+}
+inline void copy(Stream& stream, void* to, int to_device, const void* from, int from_device, size_t bytes) {
+  check(to_device == from_device ? cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, stream.get())
+                                 : cudaMemcpyPeerAsync(to, to_device, from, from_device, bytes, stream.get()),
+        "copy between devices");
+}
+inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
+  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream.get()), "copy to the device");
+  stream.synchronize();  // `from` may go
+}
+inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
+  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream.get()), "copy from the device");
+  stream.synchronize();
+}
+inline void clear(Stream& stream, void* memory, size_t bytes) {
+  check(cudaMemsetAsync(memory, 0, bytes, stream.get()), "clear device memory");
+}
+
+// Lets each of the devices write into the others' memory.
+inline void share(const std::vector<int>& devices) {
+  for (const int a : devices)
+    for (const int b : devices) {
+      if (a == b) continue;
+      int can = 0;
+      check(cudaDeviceCanAccessPeer(&can, a, b), "peer access");
+      if (!can)
+        throw std::runtime_error("CUDA: device " + std::to_string(a) +
+                                 " has no access to the memory of device " + std::to_string(b));
+      check(cudaSetDevice(a), "choose a device");
+      const cudaError_t error = cudaDeviceEnablePeerAccess(b, 0);
+      if (error == cudaErrorPeerAccessAlreadyEnabled)
+        (void)cudaGetLastError();
+      else
+        check(error, "peer access");
+    }
+}
+
+// Seen by all devices: they share counters of cells at their borders, and tell each other when to stop.
+__device__ inline uint32_t atomic_add(uint32_t* at, uint32_t value) { return atomicAdd_system(at, value); }
+__device__ inline void atomic_min(uint32_t* at, uint32_t value) { atomicMin_system(at, value); }
+
+// The four numbers of a particle, in loads of 16 bytes.
+template <typename T>
+__device__ T load(const T* at) {
+  static_assert(sizeof(T) % 16 == 0);
+  T value;
+  const auto* from = reinterpret_cast<const int4*>(at);
+  auto* to = reinterpret_cast<int4*>(&value);
+#pragma unroll
+  for (size_t k = 0; k < sizeof(T) / 16; ++k) to[k] = from[k];
+  return value;
+}
+
+inline constexpr int kLargestBlock = 256;
+
+template <class F>
+__global__ void __launch_bounds__(kLargestBlock)
+    each_kernel(uint32_t begin, uint32_t end, const __grid_constant__ F f) {
+  for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x) f(i);
+}
+
+// Each block holds `cache` in shared memory. All its threads go on or none does, though what they are told of
+// may change while they ask: those that left would leave a part of the cache unread.
+template <class F>
+__global__ void __launch_bounds__(kLargestBlock)
+    cached_kernel(uint32_t begin, uint32_t end, const uint32_t* cache, uint32_t words,
+                  const __grid_constant__ F f) {
+  extern __shared__ uint4 memory[];
+  if (__syncthreads_or(f.idle())) return;
+  auto* here = reinterpret_cast<uint32_t*>(memory);
+  for (uint32_t k = threadIdx.x; k < words; k += blockDim.x) here[k] = cache[k];
+  __syncthreads();
+  for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x)
+    f(i, here);
+}
+
+template <class F>
+__global__ void __launch_bounds__(kLargestBlock)
+    sum_kernel(uint32_t begin, uint32_t end, const __grid_constant__ F f, uint64_t* out) {
+  if (f.idle()) return;
+  unsigned long long sum = 0;
+  for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x)
+    sum += f(i);
+  for (int k = 16; k > 0; k /= 2) sum += __shfl_down_sync(0xffffffffu, sum, k);
+  if (threadIdx.x % 32 == 0) atomicAdd(reinterpret_cast<unsigned long long*>(out), sum);
+}
+
+template <class F>
+__global__ void __launch_bounds__(kLargestBlock)
+    max_kernel(uint32_t begin, uint32_t end, const __grid_constant__ F f, uint32_t* out) {
+  uint32_t most = 0;
+  for (uint32_t i = begin + blockIdx.x * blockDim.x + threadIdx.x; i < end; i += gridDim.x * blockDim.x)
+    most = max(most, f(i));
+  most = __reduce_max_sync(0xffffffffu, most);
+  if (threadIdx.x % 32 == 0) atomicMax(out, most);
+}
+
+// The threads of a block that work on one thing: each takes its share of the indices 0 .. count - 1, and goes
+// on when all are done.
+struct Block {
+  template <class F>
+  __device__ void each(uint32_t count, const F& f) const {
+    for (uint32_t k = threadIdx.x; k < count; k += blockDim.x) f(k);
+    __syncthreads();
+  }
+};
+template <class F>
+__global__ void block_kernel(const __grid_constant__ F f) {
+  extern __shared__ uint4 memory[];
+  f(blockIdx.x, Block{}, memory);
+}
+
+inline unsigned blocks_for(uint32_t count, int block) { return (count + block - 1) / block; }
+
+// Blocks stay for the whole loop where there is much to do, so that what each prepares is prepared seldom.
+inline unsigned resident_blocks(const Stream& stream, uint32_t count, int block) {
+  return std::min(blocks_for(count, block), static_cast<unsigned>(stream.multiprocessors() * (4096 / block)));
+}
+
+template <class F>
+void for_each(Stream& stream, uint32_t begin, uint32_t end, int block, const F& f) {
+  if (begin >= end) return;
+  stream.activate();
+  each_kernel<<<blocks_for(end - begin, block), block, 0, stream.get()>>>(begin, end, f);
+  check(cudaGetLastError(), "start a kernel");
+}
+// Lets a kernel's blocks have so many bytes of shared memory; they may have less than 48 KiB unasked.
+template <class Kernel>
+void ask_for_memory(const Kernel& kernel, size_t bytes, const char* what) {
+  if (bytes > size_t{48} * 1024)
+    check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(bytes)),
+          what);
+}
+template <class F>
+void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int block, const void* cache, size_t words,
+                     const F& f) {
+  if (begin >= end) return;
+  stream.activate();
+  ask_for_memory(cached_kernel<F>, words * 4, "hold a rule's tables in a block's shared memory");
+  cached_kernel<<<resident_blocks(stream, end - begin, block), block, words * 4, stream.get()>>>(
+      begin, end, static_cast<const uint32_t*>(cache), static_cast<uint32_t>(words), f);
+  check(cudaGetLastError(), "start a kernel");
+}
+// Calls f(index, block, memory), a block of threads and `bytes` of its memory each.
+template <class F>
+void for_each_block(Stream& stream, uint32_t count, int threads, size_t bytes, const F& f) {
+  if (count == 0) return;
+  stream.activate();
+  ask_for_memory(block_kernel<F>, bytes, "hold a problem in a block's shared memory");
+  block_kernel<<<count, threads, bytes, stream.get()>>>(f);
+  check(cudaGetLastError(), "start a kernel");
+}
+template <class F>
+void sum_each(Stream& stream, uint32_t begin, uint32_t end, int block, const F& f, uint64_t* out) {
+  if (begin >= end) return;
+  stream.activate();
+  sum_kernel<<<resident_blocks(stream, end - begin, block), block, 0, stream.get()>>>(begin, end, f, out);
+  check(cudaGetLastError(), "start a kernel");
+}
+template <class F>
+void max_each(Stream& stream, uint32_t begin, uint32_t end, int block, const F& f, uint32_t* out) {
+  if (begin >= end) return;
+  stream.activate();
+  max_kernel<<<resident_blocks(stream, end - begin, block), block, 0, stream.get()>>>(begin, end, f, out);
+  check(cudaGetLastError(), "start a kernel");
+}
+inline void exclusive_sums(Stream& stream, const uint32_t* in, uint32_t* out, uint32_t count) {
+  stream.activate();
+  size_t bytes = 0;
+  const int n = static_cast<int>(count);
+  check(cub::DeviceScan::ExclusiveSum(nullptr, bytes, in, out, n, stream.get()), "sums");
+  void* scratch = nullptr;
+  check(cudaMallocAsync(&scratch, bytes, stream.get()), "allocate device memory");
+  check(cub::DeviceScan::ExclusiveSum(scratch, bytes, in, out, n, stream.get()), "sums");
+  check(cudaFreeAsync(scratch, stream.get()), "free device memory");
+}
+
+}  // namespace cuboct::gpu

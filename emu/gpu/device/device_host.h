@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// emu/gpu/device/device.h on the host: a device is the machine itself, a kernel a loop.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <vector>
+
+#include "emu/gpu/device/host_stream.h"
+
+namespace cuboct::gpu {
+
+inline constexpr bool kHasGraphs = false;
+
+class Graph {
+ public:
+  void begin(Stream&) {}
+  void end(Stream&) {}
+  void launch(Stream&) {}
+  bool ready() const { return false; }
+  void drop() {}
+};
+
+inline void* allocate(int, size_t bytes) {
+  if (void* memory = std::malloc(bytes)) return memory;
+  throw std::bad_alloc();
+}
+// Waits for the device, as cudaFree does.
+inline void release(int device, void* memory) {
+  if (memory) Stream::finish(device);
+  std::free(memory);
+}
+// Of no bytes both may be null, which memcpy forbids.
+inline void copy_bytes(void* to, const void* from, size_t bytes) {
+  std::copy_n(static_cast<const char*>(from), bytes, static_cast<char*>(to));
+}
+inline void copy(Stream& stream, void* to, int, const void* from, int, size_t bytes) {
+  stream.later([=] { copy_bytes(to, from, bytes); });
+}
+inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
+  stream.synchronize();
+  copy_bytes(to, from, bytes);
+}
+inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
+  stream.synchronize();
+  copy_bytes(to, from, bytes);
+}
+inline void clear(Stream& stream, void* memory, size_t bytes) {
+  stream.later([=] { std::memset(memory, 0, bytes); });
+}
+inline void share(const std::vector<int>&) {}
+
+template <typename T>
+T atomic_add(T* at, T value) {
+  const T before = *at;
+  *at += value;
+  return before;
+}
+template <typename T>
+void atomic_min(T* at, T value) {
+  *at = std::min(*at, value);
+}
+
+// The four numbers of a particle, in one access where the machine has one.
+template <typename T>
+const T& load(const T* at) {
+  return *at;
+}
+
+template <class F>
+void for_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f) {
+  stream.later([=] {
+    for (uint32_t i = begin; i < end; ++i) f(i);
+  });
+}
+template <class F>
+void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const void* cache, size_t,
+                     const F& f) {
+  stream.later([=] {
+    if (f.idle()) return;
+    for (uint32_t i = begin; i < end; ++i) f(i, cache);
+  });
+}
+struct Block {
+  template <class F>
+  void each(uint32_t count, const F& f) const {
+    for (uint32_t k = 0; k < count; ++k) f(k);
+  }
+};
+template <class F>
+void for_each_block(Stream& stream, uint32_t count, int, size_t bytes, const F& f) {
+  stream.later([=] {
+    std::vector<std::max_align_t> memory(bytes / sizeof(std::max_align_t) + 1);
+    for (uint32_t i = 0; i < count; ++i) f(i, Block{}, memory.data());
+  });
+}
+template <class F>
+void sum_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint64_t* out) {
+  stream.later([=] {
+    if (f.idle()) return;
+    for (uint32_t i = begin; i < end; ++i) *out += f(i);
+  });
+}
+template <class F>
+void max_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint32_t* out) {
+  stream.later([=] {
+    for (uint32_t i = begin; i < end; ++i) *out = std::max(*out, f(i));
+  });
+}
+inline void exclusive_sums(Stream& stream, const uint32_t* in, uint32_t* out, uint32_t count) {
+  stream.later([=] {
+    uint32_t sum = 0;
+    for (uint32_t k = 0; k < count; ++k) out[k] = sum, sum += in[k];
+  });
+}
+
+}  // namespace cuboct::gpu

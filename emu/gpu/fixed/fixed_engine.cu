@@ -1,0 +1,2 @@
+// SPDX-License-Identifier: MIT
+#include "emu/gpu/fixed/fixed_engine.cpp"

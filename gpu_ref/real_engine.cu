@@ -1,2 +1,0 @@
-// SPDX-License-Identifier: MIT
-#include "gpu_ref/real_engine.cpp"

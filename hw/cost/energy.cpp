@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: MIT
+#include "hw/cost/energy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "hw/cost/energy_sheet.h"
+#include "hw/cost/node_area.h"
+#include "hw/cost/node_memories.h"
+#include "hw/cost/pair_work.h"
+
+namespace cuboct {
+namespace {
+
+double faces(const Plan& plan) { return 2 * plan.rule.axes; }
+// A beat's payload and its end flag.
+double beat_bits(const Plan& plan) { return plan.words.link_bits + 1; }
+
+// In what a run of so many cycles can do at most; each bound follows from "one a cycle" of
+// docs/reference/node.md.
+void check_counts(const Plan& plan, const MachineEvents& e, std::span<const MemoryTraffic> traffic,
+                  double cycles) {
+  const double slots = cycles * plan.nodes(), streams = slots * plan.arch.streamers;
+  const auto check = [&](const char* name, double count, double most) {
+    if (count > most)
+      throw std::invalid_argument(fmt::format("{} {:.0f} in {:.0f} cycles of {} nodes: at most {:.0f}", name,
+                                              count, cycles, plan.nodes(), most));
+  };
+  const auto of = [](uint64_t count) { return static_cast<double>(count); };
+  const double links = slots * faces(plan);
+  check("steps", of(e.steps), slots);
+  check("updates", of(e.updates), slots);
+  check("candidates", of(e.candidates), streams);
+  check("candidates of links", of(e.candidates_x) + of(e.candidates_y) + of(e.candidates_z),
+        of(e.candidates));
+  check("entries", of(e.entries), of(e.candidates));
+  check("issues", of(e.issues), streams);
+  check("pairs", of(e.pairs), slots * plan.arch.force_pipes);
+  check("kicks", of(e.kicks), of(e.pairs));
+  check("queue_stalls", of(e.queue_stalls), streams);
+  check("relayed", of(e.relayed), slots);
+  check("relayed_own", of(e.relayed_own), of(e.relayed));
+  const double halos = of(e.halos_x) + of(e.halos_y) + of(e.halos_z);
+  check("halos", halos, links);
+  check("tested", of(e.tested), plan.arch.halos == Halos::arrival ? halos : 0);
+  check("culled", of(e.culled_x) + of(e.culled_y) + of(e.culled_z), of(e.tested));
+  check("moved", of(e.moved), links);
+  check("scanned", of(e.scanned), slots);
+  check("left", of(e.left), of(e.scanned));
+  check("inner", of(e.inner), slots);
+  check("beats", of(e.beats), links);
+  for (uint64_t phase : e.phase_cycles) check("phase cycles", of(phase), slots);
+  // Four ports to read, two to write in each copy are more than any memory has.
+  for (const MemoryTraffic& m : traffic) {
+    if (m.words == 0 || m.bits < 1 || m.copies < 1)
+      throw std::invalid_argument(fmt::format("the memory of {} has no words, bits or copies", m.holds));
+    const std::string name = "of " + m.holds;
+    check(("words read " + name).c_str(), of(m.reads), 4 * slots * m.copies);
+    check(("words written " + name).c_str(), of(m.writes), 2 * slots * m.copies);
+  }
+}
+
+void add_datapath(Sheet& sheet, const Plan& plan, const MachineEvents& e) {
+  const DatapathWork work = datapath_work(plan);
+  const auto pairs = static_cast<double>(e.pairs), updates = static_cast<double>(e.updates),
+             tests = static_cast<double>(e.candidates) * plan.arch.filter_lanes;
+  sheet.add("pairs: products", pairs, "pairs", Constant::multiply_bit2, exact(work.pair.bit_products()));
+  sheet.add("pairs: adders", pairs, "pairs", Constant::add_bit, exact(work.pair.adder_bits));
+  sheet.add("pairs: registers", pairs, "pairs", Constant::register_bit, exact(work.pair.register_bits));
+  sheet.add("filter: adders", tests, "tests", Constant::add_bit, exact(work.lane.adder_bits));
+  sheet.add("filter: registers", tests, "tests", Constant::register_bit, exact(work.lane.register_bits));
+  if (e.tested > 0) {
+    const auto tested = static_cast<double>(e.tested);
+    sheet.add("cull: adders", tested, "records", Constant::add_bit, exact(work.cull.adder_bits));
+    sheet.add("cull: registers", tested, "records", Constant::register_bit, exact(work.cull.register_bits));
+  }
+  if (!work.update.products.empty())
+    sheet.add("update: products", updates, "particles", Constant::multiply_bit2,
+              exact(work.update.bit_products()));
+  sheet.add("update: adders", updates, "particles", Constant::add_bit, exact(work.update.adder_bits));
+  sheet.add("update: registers", updates, "particles", Constant::register_bit,
+            exact(work.update.register_bits));
+}
+
+void add_memories(Sheet& sheet, std::span<const MemoryTraffic> traffic, Energy& energy) {
+  if (traffic.empty()) energy.missing.emplace_back("memories: their reads and writes were not counted");
+  for (const MemoryTraffic& m : traffic) {
+    if (!m.counted) {
+      energy.missing.push_back(fmt::format("memory of {}: no event tells its reads and writes", m.holds));
+      continue;
+    }
+    const auto words = static_cast<double>(m.words);
+    if (m.reads > 0)
+      sheet.memory("read " + m.holds, static_cast<double>(m.reads), Constant::memory_read, words, m.bits);
+    if (m.writes > 0)
+      sheet.memory("write " + m.holds, static_cast<double>(m.writes), Constant::memory_write, words, m.bits);
+  }
+}
+
+// Beats over links of a node's side, or of a kind between chips; words half a side to or from their memory.
+void add_wires(Sheet& sheet, const Plan& plan, const MachineEvents& e, std::span<const MemoryTraffic> traffic,
+               const Technology& technology, const Band& side, Energy& energy) {
+  const auto beats = static_cast<double>(e.beats);
+  sheet.add("links: registers", beats, "beats", Constant::register_bit, exact(beat_bits(plan)));
+  if (technology.at(Constant::link_bit))
+    sheet.add("links", beats, "beats", Constant::link_bit, exact(beat_bits(plan)));
+  double bits = 0;
+  for (const MemoryTraffic& m : traffic) bits += static_cast<double>(m.reads + m.writes) * m.bits;
+  if (side.high > 0) {
+    if (!technology.at(Constant::link_bit))
+      sheet.add("links: wires", beats, "beats", Constant::wire_bit_mm, beat_bits(plan) * side);
+    if (bits > 0) sheet.add("wires within nodes", bits, "bits", Constant::wire_bit_mm, 0.5 * side);
+    return;
+  }
+  if (!technology.at(Constant::link_bit))
+    energy.missing.push_back(
+        fmt::format("links: wires: the area of a node is not known in {}", technology.name));
+  energy.missing.push_back(
+      fmt::format("wires within nodes: the area of a node is not known in {}", technology.name));
+}
+
+// Memories of a node, words wide; those of narrow memories as one.
+std::vector<NodeMemory> memories_of(const Plan& plan) {
+  const Arch& arch = plan.arch;
+  if (!arch.narrow_memories)
+    return NodeMemories(plan.rule, arch, plan.particles).of(arch.brick, arch.filter_lanes, arch.force_pipes);
+  const auto bits = static_cast<uint64_t>(memory_bits(plan));
+  return {{"memories", bits / static_cast<uint64_t>(plan.words.link_bits) + 1, plan.words.link_bits}};
+}
+
+struct NodeBits {
+  double memories = 0, tables = 0;  // bits
+  Band transistors;                 // of logic
+  Band registers;                   // bits
+};
+
+// A product that is made a bit a cycle takes an adder of its operands at least.
+Band transistors_of(const Plan& plan) {
+  DatapathWork work = datapath_work(plan);
+  Arch arch = plan.arch;
+  arch.filter_lanes *= arch.streamers;  // each has a filter of its own
+  work.update.adder_bits += faces(plan) * work.cull.adder_bits;
+  Band band;
+  const NodeArea parallel = logic_of(work, arch);
+  band.high = parallel.multipliers + parallel.adders;
+  for (Product& p : work.pair.products) {
+    if (plan.arch.multipliers == Multipliers::shared) p.count = 1;
+    if (plan.arch.multipliers == Multipliers::serial)
+      work.pair.adder_bits += p.count * (p.a + p.b), p.count = 0;
+  }
+  const NodeArea least = logic_of(work, arch);
+  band.low = std::min(band.high, least.multipliers + least.adders);
+  return band;
+}
+
+NodeBits node_bits(const Plan& plan) {
+  NodeBits node;
+  for (const NodeMemory& m : memories_of(plan))
+    node.memories += static_cast<double>(m.words) * m.bits * m.copies;
+  node.tables = plan.arch.force_pipes * datapath_work(plan).pair.table_bits();
+  node.transistors = transistors_of(plan);
+  node.registers = register_bits(plan);
+  return node;
+}
+
+void add_idle(Sheet& sheet, const Plan& plan, double cycles, double clock, const Technology& technology,
+              Energy& energy) {
+  const NodeBits node = node_bits(plan);
+  const double nodes = plan.nodes(), seconds = cycles / clock;
+  sheet.add("clock of registers", cycles * nodes, "cycles", Constant::clock_bit, node.registers);
+  if (technology.at(Constant::clock_device) || technology.at(Constant::static_device)) {
+    // How many nodes a device holds is a matter of synthesis: all, or one.
+    const Band devices{1, nodes};
+    sheet.add("clock of devices", cycles, "cycles", Constant::clock_device, devices);
+    sheet.add("devices at rest", seconds * 1e9, "ns", Constant::static_device, devices);  // mW ns is pJ
+    return;
+  }
+  sheet.add("leakage of logic", seconds, "s", Constant::leakage_transistor, nodes * node.transistors);
+  sheet.add("leakage of memories", seconds, "s", Constant::leakage_memory_bit,
+            exact(nodes * (node.memories + node.tables)));
+  energy.missing.emplace_back("leakage of registers: no figure of one apart from its energy");
+}
+
+}  // namespace
+
+// What synthesised nodes have of flip-flops over what their datapath and links need at least: with wide
+// memories 2.0 to 3.0 times, with narrow ones, which have neither filter nor queue, 1.2 and 1.5; both widened
+// (docs/measured/energy.md). The rest is delays, control, ports of memories.
+Band register_bits(const Plan& plan) {
+  constexpr Band kWide{1.9, 3.2}, kNarrow{1.1, 1.6};
+  const DatapathWork work = datapath_work(plan);
+  const Arch& arch = plan.arch;
+  const double bits = arch.force_pipes * work.pair.register_bits +
+                      arch.streamers * arch.filter_lanes * work.lane.register_bits +
+                      faces(plan) * work.cull.register_bits + work.update.register_bits +
+                      2 * faces(plan) * (beat_bits(plan) + 1);
+  return bits * (arch.narrow_memories ? kNarrow : kWide);
+}
+
+Band memory_bit_energy(const TechnologyFigure& figure, const TechnologyFigure& exponent, double words) {
+  const double ratio = words / figure.words;
+  const double a = std::pow(ratio, exponent.band.low), b = std::pow(ratio, exponent.band.high);
+  return {figure.band.low * std::min(a, b), figure.band.high * std::max(a, b)};
+}
+
+Energy energy_of(const Plan& plan, const MachineEvents& events, std::span<const MemoryTraffic> traffic,
+                 uint64_t cycles, double clock, const Technology& technology) {
+  if (!(clock > 0) || !std::isfinite(clock)) throw std::invalid_argument("the clock must be above 0 Hz");
+  check_counts(plan, events, traffic, static_cast<double>(cycles));
+  Energy energy;
+  Sheet sheet(technology, energy);
+  add_datapath(sheet, plan, events);
+  add_memories(sheet, traffic, energy);
+  add_wires(sheet, plan, events, traffic, technology, area_of(plan, technology).side, energy);
+  add_idle(sheet, plan, static_cast<double>(cycles), clock, technology, energy);
+  for (const char* always :
+       {"control: sequencers, counters, multiplexers", "clock tree above the registers' own pins",
+        "glitches and wires of a placed circuit beyond the figures' own", "host link"})
+    energy.missing.emplace_back(always);
+  return energy;
+}
+
+Area area_of(const Plan& plan, const Technology& technology) {
+  Area area;
+  const NodeBits node = node_bits(plan);
+  const double nodes = plan.nodes();
+  bool whole = true;
+  const auto add = [&](const char* part, const Band& count, Constant constant) {
+    const auto& figure = technology.at(constant);
+    if (!figure) {
+      area.missing.push_back(fmt::format("{}: no '{}' in {}", part, name_of(constant), technology.name));
+      whole = false;
+      return;
+    }
+    area.rows.push_back({part, nodes * kMm2 * (count * figure->band), figure->source});
+    area.sum += area.rows.back().mm2;
+  };
+  add("memories", exact(node.memories), Constant::memory_bit_area);
+  add("tables", exact(node.tables), Constant::memory_bit_area);
+  // At least one transistor a bit, as a table may be a ROM.
+  if (const auto& transistor = technology.at(Constant::transistor_area); whole && transistor) {
+    Band& tables = area.rows.back().mm2;
+    const double least = std::min(tables.low, nodes * kMm2 * node.tables * transistor->band.low);
+    area.sum.low += least - tables.low;
+    tables.low = least;
+  }
+  add("logic", node.transistors, Constant::transistor_area);
+  add("registers", node.registers, Constant::register_area);
+  if (whole) {
+    const auto side = [&](double mm2) { return std::sqrt(mm2 / nodes); };
+    area.side = {side(area.sum.low), side(area.sum.high)};
+    // Each face's beat with valid and ready, a side long: above the cells, or on a layer beside them.
+    constexpr double kMmOfUm = 1e-3;
+    if (const auto& pitch = technology.at(Constant::wire_pitch)) {
+      const double wires = nodes * faces(plan) * (beat_bits(plan) + 2);
+      area.rows.push_back(
+          {"wires of links", {0, wires * pitch->band.high * kMmOfUm * area.side.high}, pitch->source});
+      area.sum += area.rows.back().mm2;
+    } else {
+      area.missing.push_back(fmt::format("wires of links: no 'wire_pitch' in {}", technology.name));
+    }
+  }
+  area.missing.emplace_back("control, input and output cells, spare area of a placed circuit");
+  return area;
+}
+
+std::vector<Sensitivity> sensitivity_of(const Plan& plan, const MachineEvents& events,
+                                        std::span<const MemoryTraffic> traffic, uint64_t cycles, double clock,
+                                        const Technology& technology) {
+  Technology middle = technology;
+  for (auto& figure : middle.figures)
+    if (figure) figure->band = exact(figure->band.middle());
+  const auto sum = [&](const Technology& t) {
+    return energy_of(plan, events, traffic, cycles, clock, t).sum.middle();
+  };
+  std::vector<Sensitivity> bars;
+  for (size_t k = 0; k < kConstants; ++k) {
+    if (!technology.figures[k]) continue;
+    const Band band = technology.figures[k]->band;
+    Sensitivity bar{static_cast<Constant>(k)};
+    auto& figure = middle.figures[k];
+    figure->band = exact(band.low), bar.low = sum(middle);
+    figure->band = exact(band.high), bar.high = sum(middle);
+    figure->band = exact(band.middle());
+    if (bar.low != bar.high) bars.push_back(bar);
+  }
+  std::ranges::stable_sort(bars, {}, [](const Sensitivity& s) { return -std::abs(s.high - s.low); });
+  return bars;
+}
+
+}  // namespace cuboct

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "hw/engine/engine_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hw/plan/state_bounds.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/golden_engine.h"
+#include "model/run/reference_engine.h"
+#include "model/run/static_engine.h"
+
+namespace cuboct {
+namespace {
+
+ProgramSetting program_setting(const Plan& plan) {
+  return {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity};
+}
+
+}  // namespace
+
+FixedSetting setting_of(const Scene& scene, const Plan& plan, int threads) {
+  return {scene.rule, plan.rule, plan.lattice, plan.origin, threads};
+}
+
+Vec3 packed_place(const Scene& scene, const Plan& plan, uint32_t id) {
+  return position_of(plan.rule, plan.lattice, plan.origin,
+                     fixed_particle(scene.packing(), id, plan.rule, plan.lattice, plan.origin));
+}
+
+EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& plan) {
+  EngineKind kind;
+  kind.name = name;
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  kind.particles = plan.particles;
+  kind.displaced = plan.rule.pd;
+  kind.table_error = plan.rule.error().worst_force;
+  kind.initial = [&scene, &plan](uint32_t id) { return packed_place(scene, plan, id); };
+  return kind;
+}
+
+EngineKind real_kind(const std::string& name, const Scene& scene, const Plan& plan, bool floats) {
+  EngineKind kind;
+  kind.name = name;
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  kind.particles = scene.body.size();
+  kind.fixed = false;
+  kind.floats = floats;
+  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
+  return kind;
+}
+
+State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
+  if (from == nullptr)
+    return plan.program ? program_beginning(scene, program_setting(plan))
+                        : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+  State state = checked_state(*from, plan);
+  return plan.program ? state_of_checkpoint(std::move(state), *plan.program, from->head().engine.own) : state;
+}
+
+std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, const State& from,
+                                        const MakeIntegerEngine& make) {
+  return std::make_unique<IntegerRun>(scene, program_setting(plan), from, make);
+}
+
+std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, CheckpointReader* from,
+                                        const MakeIntegerEngine& make) {
+  return integer_run(scene, plan, begin_of(scene, plan, from), make);
+}
+
+EngineKind golden_kind(const Scene& scene, const Plan& plan) {
+  // A plan that was made for doubles has no program.
+  if (plan.program == nullptr) refuse_rounds(scene.rule, "the golden engine");
+  EngineKind kind = fixed_kind("golden", scene, plan);
+  kind.saves = true;
+  if (plan.program != nullptr) {
+    kind.make = [&scene, &plan](CheckpointReader* from, bool) { return integer_run(scene, plan, from); };
+    return kind;
+  }
+  kind.make = [&scene, &plan](CheckpointReader* from, bool) {
+    return std::make_unique<GoldenEngine>(setting_of(scene, plan), plan.arch.capacity,
+                                          begin_of(scene, plan, from));
+  };
+  return kind;
+}
+
+EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
+                          double cell_edge) {
+  EngineKind kind;
+  kind.name = "reference";
+  kind.particles = start.size();
+  kind.fixed = kind.keeps_state = false;
+  kind.floats = options.precision == Precision::float32;
+  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
+  kind.initial = [&start](uint32_t id) { return start.x[id]; };
+  // Velocity Verlet's next step needs the forces of the last one, at its half-step velocities.
+  kind.saves = options.integrator == Integrator::semi_implicit_euler;
+  kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
+    if (!from) return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
+    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, scene.rule, start, options.precision),
+                                             options, cell_edge, from->head().step);
+  };
+  return kind;
+}
+
+EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  EngineKind kind = reference_kind(scene, scene.body, options, plan.rule.cell_edge);
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
+  return kind;
+}
+
+void check_static(const RealOptions& options) {
+  if (options.precision == Precision::float32)
+    throw InputError("static loading is in doubles: --precision float is not for it");
+  if (options.integrator != Integrator::semi_implicit_euler)
+    throw InputError("static loading has no motion to integrate: --integrator is not for it");
+}
+
+EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  check_static(options);
+  EngineKind kind = static_kind(scene, scene.body, options.threads, plan.rule.cell_edge);
+  kind.plan_hash = plan.hash;
+  kind.nodes = plan.nodes();
+  return kind;
+}
+
+}  // namespace cuboct

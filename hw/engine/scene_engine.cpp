@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "hw/engine/scene_engine.h"
+
+#include <fmt/format.h>
+
+#include "hw/engine/engine_kind.h"
+#include "hw/engine/engines.h"
+#include "hw/engine/rounds_kind.h"
+#include "hw/plan/real_plan.h"
+#include "hw/plan/setup.h"
+#include "model/base/error.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/reference_engine.h"
+#include "model/run/rounds_run.h"
+#include "model/run/static_engine.h"
+
+namespace cuboct {
+
+namespace {
+
+bool is_text(const Scene& scene) {
+  const RoundsRule* rounds = scene.rule.rounds.get();
+  return rounds != nullptr && rounds->text() != nullptr;
+}
+
+bool runs_text(const Scene& scene, const std::string& engine) {
+  const EngineRow* row = find_engine(engine);
+  return is_text(scene) && row != nullptr && row->text;
+}
+
+}  // namespace
+
+std::string engine_for(const Scene& scene) {
+  return scene.loading || scene.rule.rounds != nullptr ? "reference" : "lattice";
+}
+
+void check_runs(const Scene& scene, const Arch& arch, const std::string& engine) {
+  if (engine_row(engine).here == Here::reference) return;
+  const std::string who = fmt::format("the {} engine", engine);
+  refuse_static(scene, who);
+  if (runs_text(scene, engine)) return;
+  with_places(scene, arch, [&] { refuse_rounds(scene.rule, who); });
+}
+
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine) {
+  if (runs_text(scene, engine)) return program_plan_of(scene, arch);
+  if (scene.rule.rounds != nullptr) return real_plan_of(scene, arch);
+  const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
+  const bool doubles = row != nullptr && row->here == Here::reference;
+  try {
+    return plan_of(scene, arch);
+  } catch (const InputError&) {
+    if (!doubles || formats_hold(scene, arch)) throw;
+    return real_plan_of(scene, arch);
+  }
+}
+
+Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines) {
+  for (const std::string& engine : engines) check_runs(scene, arch, engine);
+  return scene_plan_of(scene, arch, engines.front());
+}
+
+std::vector<std::string> engines_to_cross(const Scene& scene) {
+  if (is_text(scene)) return {"golden", "lattice"};
+  return {"golden", "lattice", "systemc", "rtl"};
+}
+
+uint64_t whole_steps(const Scene& scene, uint64_t steps) {
+  return scene.loading ? scene.loading->whole(steps) : steps;
+}
+
+EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
+  if (scene.loading) return static_kind(scene, plan, options);
+  if (scene.rule.rounds != nullptr) return rounds_kind(scene, plan, options);
+  return reference_kind(scene, plan, options);
+}
+
+std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,
+                                        double cell_edge, uint64_t step, const std::vector<uint64_t>& own) {
+  if (scene.loading) {
+    check_static(options);
+    if (own.empty()) return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge);
+    return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge, step, own);
+  }
+  if (scene.rule.rounds != nullptr) return std::make_unique<RoundsRun>(scene, body, options, cell_edge, step);
+  RealOptions from = options;
+  from.first_step = step;
+  return std::make_unique<ReferenceEngine>(scene, body, from, cell_edge);
+}
+
+}  // namespace cuboct

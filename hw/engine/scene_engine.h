@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Which engine runs a scene, and with what plan. Static loading and rules of several rounds need the
+// reference engine, but for rules that are text; no other place tells them from motion by a pair law.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hw/plan/plan.h"
+#include "model/real/reference.h"
+#include "model/run/engine.h"
+#include "model/run/record.h"
+#include "model/scene/scene.h"
+
+namespace cuboct {
+
+// The engine that runs the scene where nobody names one.
+std::string engine_for(const Scene& scene);
+// InputError, at the key that asks for more, where the engine cannot run the scene.
+void check_runs(const Scene& scene, const Arch& arch, const std::string& engine);
+
+// plan_of, or what stands for a plan (hw/plan/real_plan.h): of rules of several rounds, and of rules of pairs
+// that no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene).
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "");
+// The same for several engines that hold the same bits: each must run the scene.
+Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines);
+// Those that a crosscheck compares where nobody names any.
+std::vector<std::string> engines_to_cross(const Scene& scene);
+
+// Of steps or an interval, as the scene can do them: static loading knows whole load steps.
+uint64_t whole_steps(const Scene& scene, uint64_t steps);
+
+// The reference engine that the scene needs: at rest after each load step, by rounds, or by pairs.
+EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
+// The same engine in the state `body` of step `step`. `own`: Engine::memory().own of the engine that left it
+// there; empty: the run begins.
+std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,
+                                        double cell_edge, uint64_t step, const std::vector<uint64_t>& own);
+
+}  // namespace cuboct

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "study/sweep/work.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "model/base/progress.h"
+#include "model/base/resources.h"
+
+namespace cuboct::study {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Board {
+  std::mutex mutex;
+  std::condition_variable changed;
+  size_t next = 0, done = 0, running = 0;
+  double done_size = 0;
+  std::exception_ptr error;
+};
+
+void show(const Board& board, size_t count, double size, const std::string& label, Clock::time_point begin) {
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  std::string left;
+  if (board.done_size > 0) {
+    const auto rest = static_cast<uint64_t>(seconds * (size - board.done_size) / board.done_size);
+    left = fmt::format(", {}:{:02} left", rest / 60, rest % 60);
+  }
+  fmt::print(stderr, "\r\x1b[K{}: {} of {}{}", label, board.done, count, left);
+  std::fflush(stderr);
+}
+
+void worker(const std::vector<Piece>& pieces, Board& board) {
+  for (;;) {
+    size_t mine = 0;
+    {
+      const std::lock_guard guard(board.mutex);
+      if (board.error || board.next == pieces.size()) return;
+      mine = board.next++;
+    }
+    std::exception_ptr error;
+    try {
+      pieces[mine].work();
+    } catch (...) {
+      error = std::current_exception();
+    }
+    const std::lock_guard guard(board.mutex);
+    if (error && !board.error) board.error = error;
+    ++board.done;
+    board.done_size += pieces[mine].size;
+  }
+}
+
+}  // namespace
+
+void work_off(std::vector<Piece> pieces, int jobs, const std::string& label, bool progress) {
+  std::ranges::stable_sort(pieces, std::greater(), &Piece::size);
+  double size = 0;
+  for (const Piece& piece : pieces) size += piece.size;
+  Board board;
+  const size_t most = jobs > 0 ? static_cast<size_t>(jobs) : static_cast<size_t>(usable_cores());
+  std::vector<std::thread> threads;
+  board.running = std::min(most, pieces.size());
+  for (size_t k = 0, count = board.running; k < count; ++k)
+    threads.emplace_back([&] {
+      worker(pieces, board);
+      const std::lock_guard guard(board.mutex);
+      --board.running;
+      board.changed.notify_all();
+    });
+  const bool shown = progress && stderr_is_terminal();
+  const auto begin = Clock::now();
+  {
+    std::unique_lock guard(board.mutex);
+    while (board.running > 0) {
+      if (shown) show(board, pieces.size(), size, label, begin);
+      board.changed.wait_for(guard, std::chrono::milliseconds(500));
+    }
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (shown) fmt::print(stderr, "\r\x1b[K");
+  if (board.error) std::rethrow_exception(board.error);
+}
+
+}  // namespace cuboct::study
