@@ -226,7 +226,7 @@ std::string warning_section(const std::vector<std::string>& before, const Trace&
   return out + "</ul>\n";
 }
 
-std::string engine_row(const Loaded& loaded, const Trace& trace, const std::string& equal) {
+std::string engine_line(const Loaded& loaded, const Trace& trace, const std::string& equal) {
   const uint64_t updates = trace.steps() * loaded.setup.plan.particles;
   const auto cycles = cycles_per_step(trace);
   // Time steps of a static run count its load: particles are not updated in them.
@@ -241,7 +241,7 @@ std::string engine_row(const Loaded& loaded, const Trace& trace, const std::stri
 }
 
 std::string engine_section(const Loaded& loaded, const Trace& run, const std::string& directory) {
-  std::string rows = engine_row(loaded, run, "the run above");
+  std::string rows = engine_line(loaded, run, "the run above");
   std::vector<std::string> files;
   const fs::path checks = fs::path(directory) / "crosscheck";
   if (fs::is_directory(checks))
@@ -257,7 +257,7 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
       continue;
     }
     rows +=
-        engine_row(loaded, trace,
+        engine_line(loaded, trace,
                    other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
                                        "{:016x}</b>",
                                        html_text(fs::path(file).filename().string()), trace.plan_hash)
@@ -275,7 +275,7 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
                           static_cast<uint64_t>(loaded.setup.plan.words.particle_bits);
     if (verdict.empty())
       verdict = traces.size() < 2 ? "no other trace to compare" : fmt::format("{} bits equal", bits);
-    rows += engine_row(loaded, trace, verdict);
+    rows += engine_line(loaded, trace, verdict);
   }
   return "<h2>Engines</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>steps</th><th>particle "
          "updates</th><th>state bits</th>"
