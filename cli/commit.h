@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Which sources the program was built from.
 #pragma once
 
 namespace cuboct {

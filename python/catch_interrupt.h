@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Ctrl-C while a call of the module runs.
 #pragma once
 
 #include "model/base/interrupt.h"

@@ -123,7 +123,8 @@ FitAmounts Fitter::estimate(const FitShape& shape, int lanes, int pipes) {
   return all;
 }
 
-// Where the memories alone have no room, they are all that is told: the search asks for very many.
+// If the memories alone do not fit, only they are reported; logic is not estimated. The search asks for very
+// many points.
 FitAmounts Fitter::uses(const FitShape& shape, int lanes, int pipes) {
   const FitAmounts least = times(memories(shape.brick, lanes, pipes, target_.family), shape.nodes);
   return has_room(least, room_) || measured({shape.brick, lanes, pipes}) ? estimate(shape, lanes, pipes)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The option --clock.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What `cuboct check` tells of a scene.
 #pragma once
 
 #include "cli/command.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parts of the lattice engine: engine.cpp (in and out), step.cpp (one step), program_step.cpp (of a rule
-// that is text), lists.cpp (who meets whom), share.cpp (what each rank stores).
+// that is text), lists.cpp (neighbour search and near lists), share.cpp (what each rank stores).
 #pragma once
 
 #include <optional>

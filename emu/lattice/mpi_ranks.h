@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Ranks of the lattice engine over MPI.
 #pragma once
 
 #include <mpi.h>

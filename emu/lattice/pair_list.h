@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Makes the blocks' entries.
+// Builds the near-list entries of each block.
 #pragma once
 
 #include <span>

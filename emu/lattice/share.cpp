@@ -24,7 +24,7 @@ struct Moving {
 // Pairs reach no farther than two cells, also from where particles stood when the far list was made.
 constexpr int kGhostHops = 2;
 
-// In a block of so many particles of a cube of millions one pair in 15 goes beyond it.
+// With 100,000 particles per block, 1 pair in 15 crosses its border (a cube of millions of particles).
 constexpr uint32_t kRoomyBlock = 100000;
 constexpr uint32_t kMostPerThread = 2;
 

@@ -16,8 +16,8 @@
 
 namespace cuboct::emu {
 
-// One beat of a link: the payload, or the end of a stream. Bits beyond the link's width are zero, from the
-// start on: who writes a beat may leave them alone. Aligned so that a narrow one lies in one cache line.
+// One beat of a link: the payload, or the end of a stream. Bits beyond the link's width are always
+// zero; a writer need not clear them. Aligned so that a narrow one lies in one cache line.
 struct alignas(64) Beat {
   bool end = false;
   Bits payload;

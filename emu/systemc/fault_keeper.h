@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The fault that a node of SystemC reports.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// First and last cycle of each phase of a node, from the last cycles alone.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Boxes of cells.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Texts of machine files that must not be blank.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// One process at a time writes into a directory.
 #pragma once
 
 #include <string>

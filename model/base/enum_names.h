@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Names of enumerators.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Integer divisions, logarithms and conversions.
 #pragma once
 
 #include <bit>

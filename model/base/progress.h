@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The progress of a run, on a terminal.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Vectors and matrices of three dimensions, in real numbers and in integers.
 #pragma once
 
 #include <Eigen/Core>

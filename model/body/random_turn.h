@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Random orientations, of grains.
 #pragma once
 
 #include <random>

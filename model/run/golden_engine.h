@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The golden model behind the interface of engines.
 #pragma once
 
 #include "model/contract/golden.h"

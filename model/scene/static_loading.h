@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What static loading cannot do.
 #pragma once
 
 #include "model/scene/scene.h"

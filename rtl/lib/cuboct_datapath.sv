@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What becomes of particles in a node, of one cell (cuboct_node_core) or of a brick (cuboct_brick_core): pairs go
 // through the force pipes, their kicks are summed by particle, the update moves each particle once a step, and the
-// least fault of the step is kept. Who meets whom, which slot is read and where it is written is the core's to say. A
+// least fault of the step is kept. The core chooses the pairs and the slots that are read and written. A
 // place is the number of a cell in the node, absent where it has one cell, above that of a slot in the cell.
 module cuboct_datapath #(
   // Machine.

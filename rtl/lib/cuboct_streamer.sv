@@ -43,8 +43,8 @@ module cuboct_streamer #(
   logic [Segments-1:0]  came, some, one;           // by segment: records that are not done with: any, one
   logic                 complete, there, only, skip, go, done, last_record;
 
-  // What is there to be met, counted as it comes and as it is done with: it needs no comparison of two numbers, and is
-  // known from registers.
+  // Records that wait, by segment: one more on arrival, one less when it is consumed. No two numbers are compared, and
+  // the counts are registers.
   if (Own != 0) begin : gen_own
     assign came = {came_i, 1'b0};
   end else begin : gen_no_own

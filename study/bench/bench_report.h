@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// What `cuboct bench` prints of what it measured.
 #pragma once
 
 #include <benchmark/benchmark.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Mean and standard deviation.
 #pragma once
 
 #include <algorithm>

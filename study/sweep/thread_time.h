@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Processor time of a thread.
 #pragma once
 
 #include <ctime>

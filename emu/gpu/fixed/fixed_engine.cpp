@@ -34,7 +34,7 @@ class FixedEngine final : public Engine {
       const auto outcome = machine_->run(last - step_, hashes);
       step_ += outcome.done;
       using End = typename Machine<Policy>::End;
-      // Whatever else comes of a step that stopped: cells have counted particles that did not enter.
+      // Occupancy counters include particles that did not enter: new lists rebuild them.
       old_ = outcome.end != End::full && outcome.end != End::near_list;
       if (outcome.end != End::doubt && (outcome.end != End::crowded || machine_->age() > 0)) continue;
       step_by_golden();

@@ -168,7 +168,7 @@ CUBOCT_HD int piece_of(const RealLaw<Real>& law, const Real* cache, Real r2) {
   return piece;
 }
 
-// f/r in kicks per cutoff at core2 <= r2 <= 1, and 1/r2 for whom it may concern. The rounding errors of each
+// f/r in kicks per cutoff at core2 <= r2 <= 1, and 1/r2, for the damping term. The rounding errors of each
 // kind are bounded in tests/gpu/real_rule_tests.cpp. `cache`: where the law's coefficients begin.
 template <LawKind kKind, class Roots, class Real>
 CUBOCT_HD Real over_r(const RealLaw<Real>& law, const Real* cache, Real r2, Real& inverse_r2) {
