@@ -258,10 +258,10 @@ std::string engine_section(const Loaded& loaded, const Trace& run, const std::st
     }
     rows +=
         engine_line(loaded, trace,
-                   other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
-                                       "{:016x}</b>",
-                                       html_text(fs::path(file).filename().string()), trace.plan_hash)
-                         : "no state hashes to compare");
+                    other ? fmt::format("<b class=\"bad\">not compared: {} is of another scene or arch, plan "
+                                        "{:016x}</b>",
+                                        html_text(fs::path(file).filename().string()), trace.plan_hash)
+                          : "no state hashes to compare");
   }
   for (const Trace& trace : traces) {
     // Every engine against the first, and its cycles against each that counts them.
