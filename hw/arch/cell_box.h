@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Boxes of cells.
 #pragma once
-
 #include <algorithm>
 
 #include "model/contract/lattice.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Texts of machine files that must not be blank.
 #pragma once
-
 #include <string>
 
 #include "model/config/config.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One process at a time writes into a directory.
 #pragma once
-
 #include <string>
 
 namespace cuboct {

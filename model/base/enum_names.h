@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Names of enumerators.
 #pragma once
-
 #include <cstddef>
 
 namespace cuboct {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Integer divisions, logarithms and conversions.
 #pragma once
-
 #include <bit>
 #include <concepts>
 #include <cstddef>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The progress of a run, on a terminal.
 #pragma once
-
 #include <chrono>
 #include <cstdint>
 #include <string>

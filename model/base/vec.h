@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Vectors and matrices of three dimensions, in real numbers and in integers.
 #pragma once
-
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>

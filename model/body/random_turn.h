@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Random orientations, of grains.
 #pragma once
-
 #include <random>
 
 #include "model/base/vec.h"

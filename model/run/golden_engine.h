@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The golden model behind the interface of engines.
 #pragma once
-
 #include "model/contract/golden.h"
 #include "model/run/state_engine.h"
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What static loading cannot do.
 #pragma once
-
 #include "model/scene/scene.h"
 
 namespace cuboct {
