@@ -5,11 +5,9 @@
 #include <filesystem>
 
 #include "cli/study/bond_fit_text.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
+#include "cli/study/study_command.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
-#include "study/sweep/interrupted.h"
 
 namespace cuboct {
 namespace {
@@ -18,11 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 void draw(const BondFindings& found, const std::string& out) {
   write_convergence(found, out);
-  try {
-    draw_convergence(found, out);
-  } catch (const InputError& error) {
-    fmt::print(stderr, "no picture: {}\n", error.what());
-  }
+  drawn("picture", [&] { draw_convergence(found, out); });
 }
 
 void run(const bond_fit::BondStudy& study, const std::string& out, int jobs, const Answer& answer) {
@@ -49,16 +43,11 @@ void run(const bond_fit::BondStudy& study, const std::string& out, int jobs, con
 
 int fit_bonds(const std::string& path, const std::string& directory, int jobs, const Answer& answer) {
   const bond_fit::BondStudy study = bond_fit::read_bond_study(path);
-  const std::string out =
-      directory.empty() ? std::filesystem::path(path).stem().string() + ".fit" : directory;
-  const DirectoryLock lock(out, "cuboct fit");
-  check_writable(out + "/summary.json");
-  catch_interrupts();
-  try {
+  const std::string out = out_of(directory, path, ".fit");
+  kept_in(out, "cuboct fit", [&] {
+    check_writable(out + "/summary.json");
     run(study, out, jobs, answer);
-  } catch (const study::Interrupted&) {
-    throw Failed("interrupted; the same command goes on where it was");
-  }
+  });
   answer.say("directory {}\n", line_text(out));
   return 0;
 }

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/study/budget.h"
 #include "cli/study/explore_machines.h"
-#include "hw/program/options.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
+#include "cli/study/study_command.h"
 #include "model/base/json.h"
 #include "model/base/text.h"
 #include "study/machines/machine_study.h"
@@ -31,10 +28,6 @@ struct ExploreOptions {
   std::string emit;
   Answer answer;
 };
-
-std::string default_directory(const std::string& study) {
-  return std::filesystem::path(study).stem().string() + ".study";
-}
 
 // Charts need gnuplot; the page does not, but a charting library in the build.
 void report(const study::Results& results, const std::string& out, const std::string& left_out,
@@ -57,12 +50,8 @@ void report(const study::Results& results, const std::string& out, const std::st
                "  hint: tools/setup fetches them; then configure and build again\n");
   }
   std::vector<std::string> charts;
-  try {
-    charts = study::write_charts(results, out + "/charts");
+  if (drawn("charts", [&] { charts = study::write_charts(results, out + "/charts"); }))
     answer.say("charts: {} in {}/charts\n", charts.size(), line_text(out));
-  } catch (const InputError& error) {
-    fmt::print(stderr, "no charts: {}\n", error.what());
-  }
   answer.close(json_object({{"directory", json(out)},
                             {"points", std::to_string(results.outcomes.size())},
                             {"refused", std::to_string(refused)},
@@ -78,10 +67,9 @@ int explore_machines_of(const ExploreOptions& options) {
     throw InputError("--error, --figure, --add and --no-speed are of studies of errors",
                      "a study of machines has constraints = [\"error <= 1%\"]");
   const bool best = options.best || !options.emit.empty();
-  return explore_machines(
-      {options.study, options.out.empty() ? default_directory(options.study) : options.out, options.jobs,
-       best, options.confirm, options.emit},
-      options.answer);
+  return explore_machines({options.study, out_of(options.out, options.study, ".study"), options.jobs, best,
+                           options.confirm, options.emit},
+                          options.answer);
 }
 
 int explore(const ExploreOptions& options) {
@@ -96,27 +84,23 @@ int explore(const ExploreOptions& options) {
   if (!budget && study.points.empty())
     throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
                      "--error asks its [search]");
-  const std::string out = options.out.empty() ? default_directory(options.study) : options.out;
+  const std::string out = out_of(options.out, options.study, ".study");
   for (const std::string& file : options.add) study::Store::check(file, study);
-  const DirectoryLock lock(out, "cuboct explore");
-  study::Store store(out + "/results.db", study);
-  catch_interrupts();
-  for (const std::string& file : options.add)
-    options.answer.say("{} rows from {}\n", store.add(file), line_text(file));
-  study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
-  try {
+  return kept_in(out, "cuboct explore", [&] {
+    study::Store store(out + "/results.db", study);
+    for (const std::string& file : options.add)
+      options.answer.say("{} rows from {}\n", store.add(file), line_text(file));
+    study::Runner runner(study, store, {.jobs = options.jobs, .speed = !options.no_speed});
     if (budget)
       return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs},
                         options.answer);
     runner.run();
-  } catch (const study::Interrupted&) {
-    throw Failed("interrupted; the same command goes on where it was");
-  }
-  if (!runner.left_out().empty())
-    options.answer.say("{}\n  hint: --add FILE takes them from another machine's results.db\n",
-                       line_text(runner.left_out()));
-  report(store.results(), out, runner.left_out(), options.answer);
-  return 0;
+    if (!runner.left_out().empty())
+      options.answer.say("{}\n  hint: --add FILE takes them from another machine's results.db\n",
+                         line_text(runner.left_out()));
+    report(store.results(), out, runner.left_out(), options.answer);
+    return 0;
+  });
 }
 
 }  // namespace
@@ -124,13 +108,9 @@ int explore(const ExploreOptions& options) {
 void add_explore(Command& app, int& exit_code) {
   auto options = std::make_shared<ExploreOptions>();
   Command command = app.command("explore", "chart a study's settings or machines: errors, speed, energy");
-  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
-  command
-      .option("--out", options->out, "directory for results; default: that of the study's name with .study")
-      .type_name("DIR");
-  command.option("--jobs", options->jobs, "points computed at once; default: one per core")
-      .range(1, 4096)
-      .type_name("N");
+  add_study_to(command, options->study);
+  add_out_to(command, options->out, "study", ".study");
+  add_jobs_to(command, options->jobs, "points computed at once");
   command.option("--add", options->add, "results of the same study from elsewhere").type_name("FILE");
   command
       .option("--error", options->error,

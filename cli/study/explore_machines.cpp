@@ -9,9 +9,8 @@
 #include "cli/machine/emit.h"
 #include "cli/machine/machine_devices.h"
 #include "cli/machine/technologies.h"
+#include "cli/study/study_command.h"
 #include "hw/rtl/rtl_emit.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
@@ -20,7 +19,6 @@
 #include "study/machines/machine_page.h"
 #include "study/machines/machine_table.h"
 #include "study/report/page.h"
-#include "study/sweep/interrupted.h"
 
 namespace cuboct {
 namespace {
@@ -58,13 +56,12 @@ class Exploration {
 
   int run() {
     if (!options_.emit.empty()) check_emit_directory(options_.emit);
-    const DirectoryLock lock(options_.out, "cuboct explore");
-    catch_interrupts();
-    try {
-      find();
-    } catch (const study::Interrupted&) {
-      throw Failed("interrupted; the same command goes on where it was");
-    }
+    return kept_in(options_.out, "cuboct explore", [this] { return found(); });
+  }
+
+ private:
+  int found() {
+    find();
     const std::optional<size_t> best = options_.best ? choose() : std::nullopt;
     report();
     std::string chosen = "null";
@@ -86,7 +83,6 @@ class Exploration {
     return code;
   }
 
- private:
   void find() {
     study::MachineRunner runner(study_,
                                 {options_.out + "/machines.jsonl", options_.jobs, true, estimated_use});
@@ -205,13 +201,11 @@ class Exploration {
       write_text(options_.out + "/page.html", study::machine_page_of(results));
       answer_.say("page: {}/page.html\n", line_text(options_.out));
     }
-    try {
-      const size_t files =
-          study::write_charts(study::machine_charts(results), options_.out + "/charts").size();
+    size_t files = 0;
+    if (drawn("charts", [&] {
+          files = study::write_charts(study::machine_charts(results), options_.out + "/charts").size();
+        }))
       answer_.say("charts: {} in {}/charts\n", files, line_text(options_.out));
-    } catch (const InputError& error) {
-      fmt::print(stderr, "no charts: {}\n", error.what());
-    }
   }
 
   // Each reason once, with how many machines it refuses.

@@ -2,21 +2,17 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 #include <memory>
 
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/study/bond_fit.h"
-#include "hw/program/options.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
+#include "cli/study/study_command.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
 #include "model/config/config.h"
 #include "study/law_fit/fit_page.h"
-#include "study/sweep/interrupted.h"
 
 namespace cuboct {
 namespace {
@@ -62,10 +58,7 @@ class Shown {
   void pictured(Draw draw) {
     if (!draws_) return;
     try {
-      draw();
-    } catch (const InputError& error) {
-      draws_ = false;
-      fmt::print(stderr, "no page and no charts: {}\n", error.what());
+      draws_ = drawn("page and no charts", draw);
     } catch (const std::exception&) {
       if (interrupted())
         throw study::Interrupted();  // a signal to all processes of the terminal ends gnuplot too
@@ -156,16 +149,14 @@ int fit_study(const FitOptions& options) {
   const Clock::time_point begin = Clock::now();
   catch_interrupts();
   const fit::FitStudy study = fit::read_fit(options.study);
-  const std::string out =
-      options.out.empty() ? std::filesystem::path(options.study).stem().string() + ".fit" : options.out;
-  const DirectoryLock lock(out, "cuboct fit");
-  fit::Evaluations evaluations(out, study);
-  Shown shown(study, out);
-  fit::FitOptions how;
-  how.jobs = options.jobs;
-  how.see = [&](const fit::Fit& fit) { shown.so_far(fit); };
-  const Answer& answer = options.answer;
-  try {
+  const std::string out = out_of(options.out, options.study, ".fit");
+  return kept_in(out, "cuboct fit", [&] {
+    fit::Evaluations evaluations(out, study);
+    Shown shown(study, out);
+    fit::FitOptions how;
+    how.jobs = options.jobs;
+    how.see = [&](const fit::Fit& fit) { shown.so_far(fit); };
+    const Answer& answer = options.answer;
     const fit::Fit fit = fit::run_fit(study, evaluations, how);
     shown.all(fit);
     shown.charts(fit);
@@ -181,10 +172,8 @@ int fit_study(const FitOptions& options) {
     answer.say("law: {}\n", line_text(out + "/fitted.toml"));
     if (shown.draws()) answer.say("page: {}\n", line_text(out + "/page.html"));
     answer.close(json_of(study, fit, out, wall, shown.draws()));
-  } catch (const study::Interrupted&) {
-    throw Failed("interrupted; the same command goes on where it was");
-  }
-  return 0;
+    return 0;
+  });
 }
 
 }  // namespace
@@ -192,12 +181,9 @@ int fit_study(const FitOptions& options) {
 void add_fit(Command& app, int& exit_code) {
   auto options = std::make_shared<FitOptions>();
   Command command = app.command("fit", "find the force law of a curve, or the potential of a crystal");
-  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
-  command.option("--out", options->out, "directory for results; default: that of the study's name with .fit")
-      .type_name("DIR");
-  command.option("--jobs", options->jobs, "laws tried at once; default: one per core")
-      .range(1, 4096)
-      .type_name("N");
+  add_study_to(command, options->study);
+  add_out_to(command, options->out, "study", ".fit");
+  add_jobs_to(command, options->jobs, "laws tried at once");
   options->answer.add_to(command);
   command.callback([options, &exit_code] {
     exit_code = is_bond_study(options->study)

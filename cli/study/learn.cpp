@@ -4,22 +4,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 
 #include "cli/answer.h"
 #include "cli/study/learn_cracks.h"
-#include "hw/program/options.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
+#include "cli/study/study_command.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
 #include "model/base/text.h"
 #include "model/trace/plot.h"
 #include "study/learn/learn.h"
 #include "study/learn/spread.h"
-#include "study/sweep/interrupted.h"
 
 namespace cuboct {
 namespace {
@@ -103,13 +99,10 @@ void draw(const Learned& found, const std::string& directory) {
 
 void run(const LearnOptions& options) {
   const learn::LearnStudy study = learn::read_learn_study(options.study);
-  const std::string out =
-      options.out.empty() ? std::filesystem::path(options.study).stem().string() + ".learn" : options.out;
+  const std::string out = out_of(options.out, options.study, ".learn");
   learn::check_loads(study);
-  const DirectoryLock lock(out, "cuboct learn");
-  check_writable(out + "/summary.json");
-  catch_interrupts();
-  try {
+  kept_in(out, "cuboct learn", [&] {
+    check_writable(out + "/summary.json");
     const int jobs = options.jobs > 0 ? options.jobs : usable_cores();
     if (study.cracks) learn::check_cracks(study);
     const Learned found = learn::learn(study, out, jobs);
@@ -120,15 +113,11 @@ void run(const LearnOptions& options) {
     if (cracks) add_cracks(items, study, *cracks), write_crack_tables(study, *cracks, out);
     write_text(out + "/summary.json", items.json());
     options.answer.close(items);
-    try {
+    drawn("picture", [&] {
       draw(found, out);
       if (cracks) draw_cracks(study, *cracks, out);
-    } catch (const InputError& error) {
-      fmt::print(stderr, "no picture: {}\n", error.what());
-    }
-  } catch (const study::Interrupted&) {
-    throw Failed("interrupted; the same command goes on where it was");
-  }
+    });
+  });
   options.answer.say("directory {}\n", line_text(out));
 }
 
@@ -137,13 +126,9 @@ void run(const LearnOptions& options) {
 void add_learn(Command& app, int& exit_code) {
   auto options = std::make_shared<LearnOptions>();
   Command command = app.command("learn", "learn a linear peridynamic solid from a sheet of atoms");
-  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
-  command
-      .option("--out", options->out, "directory for results; default: that of the study's name with .learn")
-      .type_name("DIR");
-  command.option("--jobs", options->jobs, "samples at once; default: one per core")
-      .range(1, 4096)
-      .type_name("N");
+  add_study_to(command, options->study);
+  add_out_to(command, options->out, "study", ".learn");
+  add_jobs_to(command, options->jobs, "samples at once");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { run(*options), exit_code = 0; });
 }

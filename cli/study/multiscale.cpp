@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <map>
 #include <memory>
 
@@ -12,14 +11,12 @@
 #include "cli/study/multiscale_gpu.h"
 #include "cli/study/multiscale_node.h"
 #include "cli/study/multiscale_text.h"
-#include "hw/program/options.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
+#include "cli/study/study_command.h"
 #include "model/base/output.h"
+#include "model/base/progress.h"
 #include "model/base/resources.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
-#include "model/run/set_status.h"
 
 namespace cuboct {
 namespace {
@@ -39,27 +36,19 @@ std::vector<SetOutcome> run(const ElementStudy& study, const std::shared_ptr<con
                             const std::string& before = {}) {
   if (options.gpu) run_on_gpu({options.study, progress, before, point, options.threads});
   ElementRunOptions how;
-  SetStatus status(before);
+  StatusLine status;
   how.threads = options.threads > 0 ? options.threads : usable_cores();
   how.progress = progress;
   how.see = [&](size_t set, double part) {
-    status.say(set, study.sets, part);
+    status.say(before + set_status(set, study.sets, part));
     return !interrupted();
   };
   try {
     return run_elements(study, material, how);
   } catch (const ElementRunStopped&) {
-    throw Failed(kInterruptedElements);
+    throw Failed(kGoesOn);
   } catch (const ElementError& error) {
     throw Failed(error.what());
-  }
-}
-
-void draw(const std::function<void()>& how) {
-  try {
-    how();
-  } catch (const InputError& error) {
-    fmt::print(stderr, "no pictures: {}\n", error.what());
   }
 }
 
@@ -74,7 +63,7 @@ void run_study(const ElementStudy& study, const std::shared_ptr<const SampleMate
   write_element_tables(found, out);
   write_text(out + "/summary.json", items.json());
   options.answer.close(items);
-  draw([&] { draw_elements(found, out); });
+  drawn("pictures", [&] { draw_elements(found, out); });
 }
 
 // Each point of the grid with the study's own file, and a file of progress of its own.
@@ -99,25 +88,23 @@ void run_comparison(const ElementStudy& study, const MultiscaleOptions& options,
   write_comparison(compared, out);
   write_text(out + "/summary.json", items.json());
   options.answer.close(items);
-  draw([&] { draw_comparison(compared, out); });
+  drawn("pictures", [&] { draw_comparison(compared, out); });
 }
 
 void multiscale(const MultiscaleOptions& options) {
   const ElementStudy study = read_element_study(options.study);
-  const std::string out = options.out.empty()
-                              ? std::filesystem::path(options.study).stem().string() + ".multiscale"
-                              : options.out;
+  const std::string out = out_of(options.out, options.study, ".multiscale");
   if (study.compare && !options.technologies.empty())
     throw InputError("--technology: a node is counted for one study, not for a comparison");
   if (options.gpu) check_gpu(study);
   const std::shared_ptr<const SampleMaterial> material = material_of(study);
-  const DirectoryLock lock(out, "cuboct multiscale");
-  check_writable(out + "/summary.json");
-  catch_interrupts();
-  if (study.compare)
-    run_comparison(study, options, out);
-  else
-    run_study(study, material, options, out);
+  kept_in(out, "cuboct multiscale", [&] {
+    check_writable(out + "/summary.json");
+    if (study.compare)
+      run_comparison(study, options, out);
+    else
+      run_study(study, material, options, out);
+  });
   options.answer.say("directory {}\n", line_text(out));
 }
 
@@ -126,11 +113,8 @@ void multiscale(const MultiscaleOptions& options) {
 void add_multiscale(Command& app, int& exit_code) {
   auto options = std::make_shared<MultiscaleOptions>();
   Command command = app.command("multiscale", "stretch or strike a body whose elements carry their atoms");
-  command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
-  command
-      .option("--out", options->out,
-              "directory for results; default: that of the study's name with .multiscale")
-      .type_name("DIR");
+  add_study_to(command, options->study);
+  add_out_to(command, options->out, "study", ".multiscale");
   command.option("--threads", options->threads, "they change no bit; default: one per core")
       .range(1, 4096)
       .type_name("N");

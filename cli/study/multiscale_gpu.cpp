@@ -4,13 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
-#include "cli/answer.h"
+#include "cli/study/study_command.h"
 #include "hw/engine/engines.h"
 #include "hw/program/error_file.h"
 #include "model/base/error_parts.h"
-#include "model/base/interrupt.h"
 #include "model/base/process.h"
 
 namespace cuboct {
@@ -38,7 +36,7 @@ void run_on_gpu(const GpuElements& run) {
   const std::string said = run.progress + ".error";
   std::filesystem::remove(said);
   const int code = Process(beside(row().program), words).wait();
-  if (interrupted()) throw Failed(kInterruptedElements);
+  if (interrupted()) throw Failed(kGoesOn);
   if (code == 0) return;
   if (!std::filesystem::exists(said))
     throw Failed(code < 0 ? fmt::format("{} was ended by signal {}", row().program, -code)

@@ -8,8 +8,6 @@
 
 namespace cuboct {
 
-inline constexpr const char* kInterruptedElements = "interrupted; the same command goes on where it was";
-
 // InputError where no GPU can have the study's samples, or this build has no program for one.
 void check_gpu(const ElementStudy& study);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 #include <thread>
 #include <utility>
@@ -9,17 +8,14 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/study/budget.h"
-#include "hw/program/options.h"
+#include "cli/study/study_command.h"
 #include "model/analysis/measure.h"
-#include "model/base/directory_lock.h"
-#include "model/base/interrupt.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/quantity_text.h"
 #include "model/base/text.h"
 #include "model/trace/plot.h"
 #include "study/search/pitch_search.h"
-#include "study/sweep/interrupted.h"
 
 namespace cuboct {
 namespace {
@@ -118,15 +114,12 @@ int find(const PitchOptions& options) {
   question.threads = options.threads > 0
                          ? options.threads
                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const std::string out =
-      options.out.empty() ? std::filesystem::path(options.scene).stem().string() + ".pitch" : options.out;
-  const DirectoryLock lock(out, "cuboct pitch");
+  const std::string out = out_of(options.out, options.scene, ".pitch");
   const bool reduced = study::is_reduced(question.base);
   const Answer& answer = options.answer;
-  study::PitchAnswer found;
-  bool headed = false;
-  try {
-    found = study::find_pitch(question, out, [&](const study::PitchAnswer& so_far) {
+  return kept_in(out, "cuboct pitch", [&] {
+    bool headed = false;
+    const study::PitchAnswer found = study::find_pitch(question, out, [&](const study::PitchAnswer& so_far) {
       if (!std::exchange(headed, true))
         answer.say("{} of {}\n{:<12}{:>11}  {:<28}{:<10}{}\n", question.figure.name,
                    line_text(question.figure.curve), "pitch", "particles", "value", "off by", "host time");
@@ -141,36 +134,28 @@ int find(const PitchOptions& options) {
                  so_far.line ? rough_percent(so_far.line->error_at(runs.back().pitch)) : "-", seconds);
       std::fflush(stdout);
     });
-  } catch (const study::Interrupted&) {
-    throw Failed("interrupted; the same command goes on where it was");
-  }
-  if (found.line) {
-    const std::string& unit = found.runs.back().unit;
-    answer.say("limit       {}, known within {}\n", quantity_text(found.line->limit, unit),
-               rough_percent(found.line->limit_within / std::abs(found.line->limit)));
-  }
-  if (found.pitch) {
-    const study::PitchRun& last = found.runs.back();
-    const double times = last.pitch / *found.pitch;
-    answer.say("pitch = {}   # within {}; about {} particles\n",
-               reduced ? fmt::format("{:.4g}", *found.pitch)
-                       : fmt::format("\"{}\"", quantity_text(*found.pitch, "m")),
-               rough_percent(question.error),
-               count_text(static_cast<double>(last.particles) * times * times * times));
-  }
-  answer.close(json_of(found, question.figure, out));
-  if (found.line) {
-    try {
-      draw(found, question.figure, out + "/pitch.svg");
-    } catch (const InputError& error) {
-      fmt::print(stderr, "no picture: {}\n", error.what());
+    if (found.line) {
+      const std::string& unit = found.runs.back().unit;
+      answer.say("limit       {}, known within {}\n", quantity_text(found.line->limit, unit),
+                 rough_percent(found.line->limit_within / std::abs(found.line->limit)));
     }
-  }
-  if (!found.pitch)
-    throw Failed(
-        fmt::format("no pitch of at most {} particles keeps {}", options.most, rough_percent(question.error)),
-        "--particles N, --error E, or another figure");
-  return 0;
+    if (found.pitch) {
+      const study::PitchRun& last = found.runs.back();
+      const double times = last.pitch / *found.pitch;
+      answer.say("pitch = {}   # within {}; about {} particles\n",
+                 reduced ? fmt::format("{:.4g}", *found.pitch)
+                         : fmt::format("\"{}\"", quantity_text(*found.pitch, "m")),
+                 rough_percent(question.error),
+                 count_text(static_cast<double>(last.particles) * times * times * times));
+    }
+    answer.close(json_of(found, question.figure, out));
+    if (found.line) drawn("picture", [&] { draw(found, question.figure, out + "/pitch.svg"); });
+    if (!found.pitch)
+      throw Failed(fmt::format("no pitch of at most {} particles keeps {}", options.most,
+                               rough_percent(question.error)),
+                   "--particles N, --error E, or another figure");
+    return 0;
+  });
 }
 
 }  // namespace
@@ -200,9 +185,7 @@ void add_pitch(Command& app, int& exit_code) {
   command.option("--threads", options->threads, "of the host; default: one per core")
       .range(1, 4096)
       .type_name("N");
-  command
-      .option("--out", options->out, "directory for results; default: that of the scene's name with .pitch")
-      .type_name("DIR");
+  add_out_to(command, options->out, "scene", ".pitch");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = find(*options); });
 }

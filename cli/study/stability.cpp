@@ -62,22 +62,6 @@ struct Row {
   std::array<std::optional<study::MeasuredLimit>, kEngines.size()> measured;
 };
 
-// A line on a terminal that says what is being measured.
-class Status {
- public:
-  ~Status() { clear(); }
-  void say(const std::string& text) {
-    if (stderr_is_terminal()) fmt::print(stderr, "\r\x1b[K{}", text), std::fflush(stderr), shown_ = true;
-  }
-  void clear() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K"), std::fflush(stderr);
-    shown_ = false;
-  }
-
- private:
-  bool shown_ = false;
-};
-
 int axis_of(const StabilityOptions& options, const Scene& scene) {
   return options.axis.empty() ? strain_axis(scene) : options.axis[0] - 'x';
 }
@@ -192,11 +176,11 @@ void measure(const StabilityOptions& options, const Scene& scene, const Arch& ar
     check_writable(options.maps + "/damping.png");
   }
   catch_interrupts();
-  Status status;
+  StatusLine status;  // what is being measured
   std::vector<Row> rows;
   std::vector<std::string> drawn;
   const auto print = [&] {
-    status.clear();
+    status.wipe();
     options.answer.say("{}", block_text(text_of(scene, rows)));
     for (const std::string& path : drawn) options.answer.say("{}\n", line_text(path));
     options.answer.close(json_of(scene, rows, drawn));

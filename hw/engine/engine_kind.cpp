@@ -107,27 +107,11 @@ EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptio
   return kind;
 }
 
-EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
-  EngineKind kind = reference_kind(scene, scene.body, options, plan.rule.cell_edge);
-  kind.plan_hash = plan.hash;
-  kind.nodes = plan.nodes();
-  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
-  return kind;
-}
-
 void check_static(const RealOptions& options) {
   if (options.precision == Precision::float32)
     throw InputError("static loading is in doubles: --precision float is not for it");
   if (options.integrator != Integrator::semi_implicit_euler)
     throw InputError("static loading has no motion to integrate: --integrator is not for it");
-}
-
-EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
-  check_static(options);
-  EngineKind kind = static_kind(scene, scene.body, options.threads, plan.rule.cell_edge);
-  kind.plan_hash = plan.hash;
-  kind.nodes = plan.nodes();
-  return kind;
 }
 
 }  // namespace cuboct

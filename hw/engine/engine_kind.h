@@ -32,11 +32,8 @@ std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, Ch
                                         const MakeIntegerEngine& make = {});
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan);
-EngineKind reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
 // InputError for floats, or velocity Verlet, which static loading has not.
 void check_static(const RealOptions& options);
-// Of a scene with static loading, checked so.
-EngineKind static_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
 // Without a plan, from `start` instead of the scene's body. `cell_edge`: m, in which speeds are told.
 EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
                           double cell_edge);

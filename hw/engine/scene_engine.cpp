@@ -5,7 +5,6 @@
 
 #include "hw/engine/engine_kind.h"
 #include "hw/engine/engines.h"
-#include "hw/engine/rounds_kind.h"
 #include "hw/plan/real_plan.h"
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
@@ -70,9 +69,21 @@ uint64_t whole_steps(const Scene& scene, uint64_t steps) {
 }
 
 EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options) {
-  if (scene.loading) return static_kind(scene, plan, options);
-  if (scene.rule.rounds != nullptr) return rounds_kind(scene, plan, options);
-  return reference_kind(scene, plan, options);
+  EngineKind kind = scene_reference_kind(scene, scene.body, options, plan.rule.cell_edge);
+  kind.plan_hash = plan.hash;
+  kind.nodes = scene.rule.rounds != nullptr && !scene.loading ? 0 : plan.nodes();
+  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
+  return kind;
+}
+
+EngineKind scene_reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
+                                double cell_edge) {
+  if (scene.loading) {
+    check_static(options);
+    return static_kind(scene, start, options.threads, cell_edge);
+  }
+  return scene.rule.rounds != nullptr ? rounds_kind(scene, start, options, cell_edge)
+                                      : reference_kind(scene, start, options, cell_edge);
 }
 
 std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,

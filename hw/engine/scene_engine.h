@@ -33,6 +33,9 @@ uint64_t whole_steps(const Scene& scene, uint64_t steps);
 
 // The reference engine that the scene needs: at rest after each load step, by rounds, or by pairs.
 EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
+// Without a plan, from `start` instead of the scene's body. `cell_edge`: m, in which speeds are told.
+EngineKind scene_reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
+                                double cell_edge);
 // The same engine in the state `body` of step `step`. `own`: Engine::memory().own of the engine that left it
 // there; empty: the run begins.
 std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "model/base/spelling.h"
+#include "model/base/unit_names.h"
 
 namespace cuboct {
 namespace {
@@ -72,8 +73,7 @@ const NamedUnit* find_unit(std::string_view name) {
 }
 
 std::vector<std::string> common_spellings() {
-  std::vector<std::string> names;
-  for (const NamedUnit& unit : kUnits) names.emplace_back(unit.name);
+  std::vector<std::string> names = named_units();
   for (const char* name : {"kg", "mg", "mm",  "um",  "nm",  "cm", "km", "ms", "us",  "ns", "kN",
                            "mN", "MN", "kPa", "MPa", "GPa", "mJ", "uJ", "nJ", "kHz", "MHz"})
     names.emplace_back(name);
@@ -255,6 +255,12 @@ std::string describe(const Dimension& dimension) {
     if (std::abs(power) > 1) side += fmt::format("^{}", std::abs(power));
   }
   return (above.empty() ? "1" : above) + below;
+}
+
+std::vector<std::string> named_units() {
+  std::vector<std::string> names;
+  for (const NamedUnit& unit : kUnits) names.emplace_back(unit.name);
+  return names;
 }
 
 ParsedQuantity parse_quantity(std::string_view text) { return Parser(text).quantity(); }

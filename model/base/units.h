@@ -2,8 +2,8 @@
 // Physical dimensions and the text form of quantities: "0.5 mm", "1.41 g/cm^3", "[0, 0, -9.81] m/s^2".
 //
 // A unit is built of named units with `*`, `/`, `^` and a whole exponent, and parentheses; `*` and `/` bind
-// alike, from left to right; `1` stands alone in "1/s". Named units: g m s N Pa J W Hz eV u K angstrom rad
-// deg min, each with the prefixes f p n u (or µ) m c k M G T where that gives no other named unit.
+// alike, from left to right; `1` stands alone in "1/s". Named units are those of unit_names.h, each
+// with the prefixes f p n u (or µ) m c k M G T where that gives no other named unit.
 #pragma once
 
 #include <array>

@@ -179,6 +179,10 @@ class SetRun {
 
 }  // namespace
 
+std::string set_status(size_t set, size_t sets, double part) {
+  return fmt::format("set {} of {}: {:.0f} %", set + 1, sets, 100 * part);
+}
+
 std::vector<SetOutcome> run_elements(const ElementStudy& study,
                                      const std::shared_ptr<const SampleMaterial>& material,
                                      const ElementRunOptions& options) {

@@ -36,6 +36,9 @@ struct SetOutcome {
   double processor = 0;  // s, of all threads of this process
 };
 
+// `set` from 0, part from 0 to 1: how far a study is, in words.
+std::string set_status(size_t set, size_t sets, double part);
+
 // Where the set at hand is.
 struct ElementProgress {
   SetOutcome outcome;

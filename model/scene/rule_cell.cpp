@@ -32,10 +32,7 @@ std::vector<bool> asking(const RealGraph& graph, const std::vector<bool>& fields
 
 bool asks_place(const std::vector<ProgramRound>& rounds) {
   const auto any = [](const RealGraph& graph) {
-    return std::ranges::any_of(graph.nodes(), [](const RealNode& node) {
-      return node.op == RealOp::input &&
-             (node.input.source == RealSource::position || node.input.source == RealSource::noise);
-    });
+    return graph.reads(RealSource::position) || graph.reads(RealSource::noise);
   };
   return std::ranges::any_of(rounds, [&](auto& round) { return any(round.pair) || any(round.finish); });
 }

@@ -15,6 +15,7 @@
 #include "emu/lattice/program.h"
 #include "emu/lattice/run.h"
 #include "hw/engine/engine_kind.h"
+#include "hw/engine/scene_engine.h"
 #include "hw/program/remote.h"
 #include "model/base/output.h"
 #include "model/base/resources.h"
@@ -251,7 +252,7 @@ std::vector<Bench> benches(const BenchLength& length, int threads) {
                 run_block(
                     s, name, scene, seconds,
                     [&](const BenchCase& made) {
-                      return reference_kind(made.scene, made.plan, options).make(nullptr, false);
+                      return scene_reference_kind(made.scene, made.plan, options).make(nullptr, false);
                     },
                     [&](const Bed&) { return ", " + counted(options.threads) + ", " + Reference::simd(); });
               });

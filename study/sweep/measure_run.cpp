@@ -8,11 +8,8 @@
 #include <stdexcept>
 
 #include "emu/lattice/run.h"
-#include "hw/engine/engine_kind.h"
 #include "hw/engine/scene_engine.h"
 #include "model/analysis/strain.h"
-#include "model/rules/rounds_rule.h"
-#include "model/run/rounds_run.h"
 #include "study/sweep/gpu_program.h"
 
 namespace cuboct::study {
@@ -69,8 +66,7 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
   options.precision = settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   options.threads = request.threads;
   const Body start = started_body(scene, settings.integrator == Integrator::semi_implicit_euler);
-  const EngineKind kind = scene.rule.rounds != nullptr ? rounds_kind(scene, start, options, 1)
-                                                       : reference_kind(scene, start, options, 1);
+  const EngineKind kind = scene_reference_kind(scene, start, options, 1);
   std::vector<Body> kept;
   std::vector<Vec3> last;
   Run run = run_engine(scene, kind, request, per_sample, [&](uint64_t sample, const RunState& frame) {

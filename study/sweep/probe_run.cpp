@@ -4,10 +4,8 @@
 #include <optional>
 
 #include "emu/lattice/run.h"
-#include "hw/engine/engine_kind.h"
+#include "hw/engine/scene_engine.h"
 #include "model/base/steps.h"
-#include "model/rules/rounds_rule.h"
-#include "model/run/rounds_run.h"
 #include "model/run/static_engine.h"
 #include "study/sweep/measure_run.h"
 
@@ -23,13 +21,10 @@ Trace probe_run(const Scene& scene, const Arch& arch, const std::string& engine,
   const double cell = scene.rule.cutoff();
   std::optional<Plan> plan;
   EngineKind kind;
-  if (scene.loading) {
-    kind = static_kind(scene, scene.body, threads, cell);
-  } else if (engine == "reference") {
+  if (scene.loading || engine == "reference") {
     RealOptions real;
     real.threads = threads;
-    kind = scene.rule.rounds != nullptr ? rounds_kind(scene, scene.body, real, cell)
-                                        : reference_kind(scene, scene.body, real, cell);
+    kind = scene_reference_kind(scene, scene.body, real, cell);
   } else {
     plan = lattice_plan(scene, arch);
     emu::LatticeChoice choice;

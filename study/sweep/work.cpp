@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -27,15 +26,15 @@ struct Board {
   std::exception_ptr error;
 };
 
-void show(const Board& board, size_t count, double size, const std::string& label, Clock::time_point begin) {
+std::string status(const Board& board, size_t count, double size, const std::string& label,
+                   Clock::time_point begin) {
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   std::string left;
   if (board.done_size > 0) {
     const auto rest = static_cast<uint64_t>(seconds * (size - board.done_size) / board.done_size);
     left = fmt::format(", {}:{:02} left", rest / 60, rest % 60);
   }
-  fmt::print(stderr, "\r\x1b[K{}: {} of {}{}", label, board.done, count, left);
-  std::fflush(stderr);
+  return fmt::format("{}: {} of {}{}", label, board.done, count, left);
 }
 
 void worker(const std::vector<Piece>& pieces, Board& board) {
@@ -76,17 +75,16 @@ void work_off(std::vector<Piece> pieces, int jobs, const std::string& label, boo
       --board.running;
       board.changed.notify_all();
     });
-  const bool shown = progress && stderr_is_terminal();
   const auto begin = Clock::now();
   {
+    StatusLine line;
     std::unique_lock guard(board.mutex);
     while (board.running > 0) {
-      if (shown) show(board, pieces.size(), size, label, begin);
+      if (progress) line.say(status(board, pieces.size(), size, label, begin));
       board.changed.wait_for(guard, std::chrono::milliseconds(500));
     }
   }
   for (std::thread& thread : threads) thread.join();
-  if (shown) fmt::print(stderr, "\r\x1b[K");
   if (board.error) std::rethrow_exception(board.error);
 }
 

@@ -8,6 +8,7 @@
 #include "model/base/error.h"
 #include "tests/backend/clocked_timing.h"
 #include "tests/backend/engines.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -73,15 +74,10 @@ TEST(DeviceCut, AreRefusedWithChecks) {
   const Plan plan = with_boards(make_case("undamped_2x2x2"), {{1, 1, 1}, 3, 2}).setup.plan;
   Arch arch = plan.arch;
   arch.link_check = LinkCheck::retry;
-  try {
-    make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles);
-    FAIL() << "was not refused";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "check = \"retry\" with [boards]: the window of 8 beats and the patience of 15 cycles are "
-                 "those of a wire\n  hint: leave the check of links between devices to their line code: set "
-                 "check = \"none\"");
-  }
+  EXPECT_EQ(refused_with([&] { make_plan(plan.rule, arch, plan.lattice, plan.origin, plan.particles); }),
+            "check = \"retry\" with [boards]: the window of 8 beats and the patience of 15 cycles are "
+            "those of a wire\n  hint: leave the check of links between devices to their line code: set "
+            "check = \"none\"");
 }
 
 // No bit depends on links, without stalls and with them.

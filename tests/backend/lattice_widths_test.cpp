@@ -10,6 +10,7 @@
 #include "tests/backend/against_golden.h"
 #include "tests/support/block.h"
 #include "tests/support/dice.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -291,12 +292,7 @@ TEST(LatticeSpan, ALongRingHoldsGoldensBits) {
 }
 
 std::string refusal(const Plan& plan, uint32_t count) {
-  try {
-    emu::LatticeEngine(plan, 0, count, {}, {});
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "accepted";
+  return refused_with([&] { emu::LatticeEngine(plan, 0, count, {}, {}); });
 }
 
 TEST(LatticeSpan, RefusesWhatADoubleOrAnIndexDoesNotHold) {

@@ -10,6 +10,7 @@
 #include "emu/systemc/planar.h"
 #include "tests/backend/engines.h"
 #include "tests/support/cases.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -126,12 +127,7 @@ TEST(NativeFaults, AFullCellAtTheStartIsRefusedAsByGolden) {
   c.setup.plan.arch.capacity = 3;
   const GoldenRun golden = run_golden(c.setup, 1);
   ASSERT_TRUE(golden.fault);
-  try {
-    run_native(c);
-    FAIL();
-  } catch (const RunError& e) {
-    EXPECT_STREQ(e.what(), golden.fault->what());
-  }
+  EXPECT_EQ(refused_with<RunError>([&] { run_native(c); }), golden.fault->what());
 }
 
 // Four slots at a time, at the limits of the formats and on both sides of each plane.

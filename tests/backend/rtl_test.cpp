@@ -14,6 +14,7 @@
 #include "emu/verilated/verilated_node.h"
 #include "tests/backend/engines.h"
 #include "tests/support/cases.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -204,13 +205,11 @@ std::string place_of(const std::string& assertion) {
 // The assertions that a node's memories have room: the run ends, the process does not.
 TEST(RtlAssertion, EndsThePlainRunWithNodeCycleAndLine) {
   const Case c = make_case("undamped_2x2x2");
-  try {
-    run_loop_bench(c.setup.plan, c.setup.initial, keep_all(5), one_flooded(c.setup.plan), "rtl");
-    FAIL() << "no assertion failed";
-  } catch (const std::runtime_error& e) {
-    EXPECT_EQ(std::string(e.what()), "node 1 (1,0,0), cycle 60: the assertion of the RTL at " +
-                                         place_of("a_migrate_room") + " failed");
-  }
+  EXPECT_EQ(
+      refused_with<std::runtime_error>([&] {
+        run_loop_bench(c.setup.plan, c.setup.initial, keep_all(5), one_flooded(c.setup.plan), "rtl");
+      }),
+      "node 1 (1,0,0), cycle 60: the assertion of the RTL at " + place_of("a_migrate_room") + " failed");
 }
 
 TEST(RtlAssertion, EndsTheProgramWithOne) {

@@ -13,6 +13,7 @@
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "tests/support/cases.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -36,12 +37,7 @@ class RuleCodeTest : public testing::Test {
     setenv("CXX", path.c_str(), 1);
   }
   std::string refusal() {
-    try {
-      engine();
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return {};
+    return refused_with([this] { engine(); });
   }
   void engine() {
     emu::LatticeEngine engine(case_.setup.plan, 0,

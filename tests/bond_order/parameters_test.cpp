@@ -7,19 +7,15 @@
 
 #include "model/atoms/bond_order/tersoff_parameters.h"
 #include "model/base/error.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
 
 TEST(Tersoff, KnowsItsSets) {
   for (const std::string& name : tersoff_set_names()) EXPECT_GT(tersoff_set(name).cutoff(), 2) << name;
-  try {
-    tersoff_set("si_1898");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "no set of Tersoff parameters is called 'si_1898'\n  hint: did you mean 'si_1988'?");
-  }
+  EXPECT_EQ(refused_with([&] { tersoff_set("si_1898"); }),
+            "no set of Tersoff parameters is called 'si_1898'\n  hint: did you mean 'si_1988'?");
 }
 
 TEST(Tersoff, TakesOtherUnits) {

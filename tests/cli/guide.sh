@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: MIT
 # Runs every sh block of a page in turn, in one directory, and finds every line of its plain blocks in what the block
 # before printed. A systemverilog block is written to the file that its first line names: `// NAME`.
-# usage: guide.sh ROOT DIRECTORY_OF_CUBOCT PAGE BLOCKS TEXTS [FILE...]
+# usage: [IN=DIRECTORY] guide.sh ROOT DIRECTORY_OF_CUBOCT PAGE BLOCKS TEXTS [FILE...]
+#   IN: the directory; else a new one, with ROOT's scenes
 #   at least BLOCKS sh blocks and TEXTS plain ones stand on the page; the FILEs exist at the end
 set -euo pipefail
 root=$1 programs=$2 page=$1/$3 least_blocks=$4 least_texts=$5
 shift 5
 work=$(mktemp -d)
+printed=$work/printed
 trap 'rm -rf "$work"' EXIT
 ln -s "$root/scenes" "$work/scenes"
-cd "$work"
+cd "${IN:-$work}"
 PATH=$programs:$PATH
 
 # A page's sleep of seconds lets a program in the background begin: here until it catches SIGTERM, however busy the machine is.
@@ -32,14 +34,14 @@ while IFS= read -r line; do
     ':```'*) kind=other body='' ;;
     'sh:```')
       kind='' blocks=$((blocks + 1))
-      bash -euo pipefail -c "$sleeps"$'\n'"$body" >printed 2>&1 </dev/null || { echo "failed: $body"; cat printed; exit 1; } ;;
+      bash -euo pipefail -c "$sleeps"$'\n'"$body" >"$printed" 2>&1 </dev/null || { echo "failed: $body"; cat "$printed"; exit 1; } ;;
     'file:```')
       kind='' name=${body%%$'\n'*}
       printf %s "$body" >"${name#// }" ;;
     'text:```')
       kind='' texts=$((texts + 1))
       while IFS= read -r expected; do
-        grep -qxF -- "$expected" printed || { echo "not printed: $expected"; cat printed; exit 1; }
+        grep -qxF -- "$expected" "$printed" || { echo "not printed: $expected"; cat "$printed"; exit 1; }
       done < <(printf %s "$body") ;;
     'other:```') kind='' ;;
     sh:* | file:* | text:*) body+=$line$'\n' ;;

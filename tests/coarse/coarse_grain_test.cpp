@@ -9,6 +9,7 @@
 #include <random>
 
 #include "model/base/error.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -158,27 +159,19 @@ TEST(Smoothness, IsThatOfTwoLinesOverOne) {
 
 TEST(CoarseRefuses, AtomsAndPointsThatAreAlone) {
   Matter m(2);
-  const auto told = [](const auto& make) {
-    try {
-      make();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("nothing");
-  };
   CoarsePoints away = m.points;
   away.x.emplace_back(100, 0, 0);
   EXPECT_EQ(
-      told([&] { CoarseGrain(away, m.x, m.mass); }),
+      refused_with([&] { CoarseGrain(away, m.x, m.mass); }),
       "point 36 at (100, 0, 0) has no atom within 8\n  hint: a larger radius, or points where atoms are");
   std::vector<Vec3> x = m.x;
   x[3] = {50, 1, 0};
-  EXPECT_EQ(told([&] { CoarseGrain(m.points, x, m.mass); }),
+  EXPECT_EQ(refused_with([&] { CoarseGrain(m.points, x, m.mass); }),
             "atom 3 at (50, 1, 0) is within 8 of no point\n  hint: a larger radius, or more points");
   CoarseGrain grain(m.points, m.x, m.mass);
   std::vector<Vec3> u(m.x.size(), Vec3::Zero());
   u[7][1] = std::nan("");
-  EXPECT_EQ(told([&] { grain.look(u, kSight); }), "the displacement of atom 7 is not finite");
+  EXPECT_EQ(refused_with([&] { grain.look(u, kSight); }), "the displacement of atom 7 is not finite");
 }
 
 // Repeating along x, all points are alike.

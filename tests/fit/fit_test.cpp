@@ -5,6 +5,7 @@
 #include "model/base/output.h"
 #include "study/law_fit/curve_error.h"
 #include "tests/fit/small_fit.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::fit::test {
 namespace {
@@ -68,15 +69,10 @@ TEST_F(SmallFit, IsNotMixedWithAnother) {
   const std::string file = path("out/evaluations.jsonl"), text = read_text(file);
   write_text(file,
              text.substr(0, text.find('\n') + 1) + "{\"free\": [1,\n" + text.substr(text.find('\n') + 1));
-  try {
-    Evaluations(path("out"), one);
-    FAIL() << "taken";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.what(),
-              file +
-                  ": line 2 is none of its results\n  hint: it is damaged: take another --out DIR, "
-                  "or remove the file and begin again");
-  }
+  EXPECT_EQ(refused_with([&] { Evaluations(path("out"), one); }),
+            file +
+                ": line 2 is none of its results\n  hint: it is damaged: take another --out DIR, "
+                "or remove the file and begin again");
 }
 
 // The fixed rule and doubles, of the same start: they part by the rounding of the rule.
@@ -105,12 +101,7 @@ TEST_F(SmallFit, WorkOfYearsIsRefusedBeforeItBegins) {
     std::ofstream(file) << "scene = \"" CUBOCT_SOURCE_DIR "/scenes/studies/fit_bar_scene.toml\"\n"
                         << "reach = 1.4142135\n[change.run]\nstatic = " << loading
                         << "\n[target]\nstrain = [0, 0.01, 0.02, 0.05]\nstress = \"" << stress << "\"\n";
-    try {
-      read_fit(file);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "read";
+    return refused_with([&] { read_fit(file); });
   };
   const std::string far = refusal("false", "[0, 1e17, 2e17, 4e17] Pa");
   EXPECT_NE(
@@ -119,7 +110,7 @@ TEST_F(SmallFit, WorkOfYearsIsRefusedBeforeItBegins) {
           "1.71e+11 particle-steps: at most 1e+11 are made"),
       std::string::npos)
       << far;
-  EXPECT_EQ(refusal("{ load_steps = 12, evaluations = 500 }", "[0, 1e17, 2e17, 4e17] Pa"), "read");
+  EXPECT_EQ(refusal("{ load_steps = 12, evaluations = 500 }", "[0, 1e17, 2e17, 4e17] Pa"), "accepted");
 }
 
 // A bar that breaks, one whose law is refused, and one that finds no rest have errors all the same.

@@ -10,6 +10,7 @@
 
 #include "emu/lattice/run.h"
 #include "hw/engine/engine_kind.h"
+#include "hw/engine/scene_engine.h"
 #include "hw/plan/setup.h"
 
 namespace cuboct {
@@ -37,7 +38,7 @@ std::vector<uint64_t> looks(const Scene& scene) {
 }
 
 std::vector<Curve> in_doubles(const Scene& scene, const Plan& plan, const RunRequest& request) {
-  return record(scene, reference_kind(scene, plan, {}), request).trace.curves;
+  return record(scene, scene_reference_kind(scene, plan, {}), request).trace.curves;
 }
 
 const std::vector<double>& values(const std::vector<Curve>& curves, const std::string& name) {

@@ -8,12 +8,11 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include "emu/gpu/bench/bench_report.h"
 #include "model/base/error.h"
+#include "model/base/output.h"
 #include "model/base/process.h"
 #include "tests/gpu/fake_clock.h"
 #include "tests/gpu/fake_nvml.h"
@@ -92,13 +91,6 @@ BenchMachine machine_of(Asked& asked, const std::function<void(uint64_t)>& on_st
 
 BenchRow row_of(BenchScene::Kind kind, const char* arithmetic) {
   return {{kind, 6, false}, arithmetic, "small", ""};
-}
-
-std::string contents(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 TEST(Statistics, OfFewNumbers) {
@@ -399,13 +391,13 @@ TEST(Program, TellsTheMachine) {
   const std::string path = scratch.path("machine");
   BenchMachine machine = machine_of(asked);
   EXPECT_EQ(bench({"--machine", path}, machine).code, 0);
-  EXPECT_TRUE(contents(path).starts_with(R"({"devices":[{"ordinal":0,)")) << contents(path);
+  EXPECT_TRUE(read_text(path).starts_with(R"({"devices":[{"ordinal":0,)")) << read_text(path);
   machine.devices = [](std::string* why) {
     *why = "no driver";
     return std::vector<Device>{};
   };
   EXPECT_EQ(bench({"--machine", path}, machine).code, 0);
-  EXPECT_EQ(contents(path), "none: no driver\n");
+  EXPECT_EQ(read_text(path), "none: no driver\n");
 }
 
 int lines_of(const std::string& text) { return static_cast<int>(std::count(text.begin(), text.end(), '\n')); }
@@ -430,8 +422,8 @@ TEST(Program, LeavesALineForEachRow) {
   EXPECT_NE(answer.out.find("\n# no energies: not asked for\n"), std::string::npos) << answer.out;
   EXPECT_NE(answer.out.find("\ndamped_256k.float "), std::string::npos) << answer.out;
   EXPECT_NE(answer.out.find("\ndamped_256k.fixed "), std::string::npos) << answer.out;
-  EXPECT_EQ(lines_of(contents(json)), 3) << contents(json);
-  EXPECT_EQ(lines_of(contents(lines)), 6) << contents(lines);
+  EXPECT_EQ(lines_of(read_text(json)), 3) << read_text(json);
+  EXPECT_EQ(lines_of(read_text(lines)), 6) << read_text(lines);
 }
 
 TEST(Program, GoesOnAfterARowThatFails) {
@@ -455,7 +447,7 @@ TEST(Program, GoesOnAfterARowThatFails) {
                 "80 GB\nsolid_256k.fixed "),
             std::string::npos)
       << answer.out;
-  EXPECT_NE(contents(json).find("\n{\"row\":\"solid_256k.double\",\"left_out\":\"needs 90 GB of 80 GB\"}\n"),
+  EXPECT_NE(read_text(json).find("\n{\"row\":\"solid_256k.double\",\"left_out\":\"needs 90 GB of 80 GB\"}\n"),
             std::string::npos);
   // One that does not fit is no failure.
   EXPECT_EQ(bench({"--only", "solid_256k.double", "--quick"}, machine).code, 0);
@@ -478,8 +470,8 @@ TEST(ProgramDeathTest, KeepsWhatItFoundWhenInterrupted) {
     std::exit(run_bench(static_cast<int>(argv.size()), argv.data(), machine));
   };
   EXPECT_EXIT(interrupted_run(), testing::ExitedWithCode(1), "");
-  EXPECT_EQ(lines_of(contents(json)), 2) << contents(json);
-  EXPECT_NE(contents(json).find("{\"row\":\"damped_256k.float\","), std::string::npos);
+  EXPECT_EQ(lines_of(read_text(json)), 2) << read_text(json);
+  EXPECT_NE(read_text(json).find("{\"row\":\"damped_256k.float\","), std::string::npos);
 }
 
 }  // namespace

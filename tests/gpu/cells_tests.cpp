@@ -11,19 +11,10 @@
 #include "emu/gpu/messages.h"
 #include "model/base/error.h"
 #include "tests/support/dice.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::gpu {
 namespace {
-
-template <class Call>
-std::string refusal(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "accepted";
-}
 
 std::array<std::vector<uint64_t>, 3> even(const Geometry& g) {
   std::array<std::vector<uint64_t>, 3> per_plane;
@@ -188,11 +179,11 @@ TEST(GpuCells, RefusesMoreSlabsThanThereArePlanesFor) {
   Geometry g;
   g.total = {3, 7, 4};
   g.reach = 2;
-  EXPECT_EQ(refusal([&] { make_cells(g, even(g), 2); }),
+  EXPECT_EQ(refused_with([&] { make_cells(g, even(g), 2); }),
             "2 slabs of 4 planes of cells or more: the scene has 7 along its longest axis\n"
             "  hint: use fewer devices");
   g.total[1] = 8;
-  EXPECT_EQ(refusal([&] { make_cells(g, even(g), 2); }), "accepted");
+  EXPECT_EQ(refused_with([&] { make_cells(g, even(g), 2); }), "accepted");
 }
 
 TEST(GpuEntries, TellPlaceAndCellApart) {
@@ -219,7 +210,7 @@ TEST(GpuEntries, TellPlaceAndCellApart) {
 TEST(GpuRefusals, OfDevicesAndBlocks) {
   ASSERT_EQ(find_devices().size(), 8u);
   const auto text = [](std::vector<int> devices, int block) {
-    return refusal([&] { require_devices({devices, block}); });
+    return refused_with([&] { require_devices({devices, block}); });
   };
   EXPECT_EQ(text({0, 7, 0}, 128), "accepted");
   EXPECT_EQ(text({0}, 32), "accepted");
@@ -234,7 +225,7 @@ TEST(GpuRefusals, OfDevicesAndBlocks) {
 }
 
 TEST(GpuRefusals, OfTablesThatNoBlockHolds) {
-  const auto text = [](uint64_t bytes) { return refusal([&] { require_tables({{2}, 128}, bytes); }); };
+  const auto text = [](uint64_t bytes) { return refused_with([&] { require_tables({{2}, 128}, bytes); }); };
   EXPECT_EQ(text(232448), "accepted");
   EXPECT_EQ(text(232449),
             "the rule's tables take 232449 bytes, and a block of device 2 (host) holds 232448\n"
@@ -244,7 +235,7 @@ TEST(GpuRefusals, OfTablesThatNoBlockHolds) {
 // The host's free memory changes from call to call: words and proportions are what is compared.
 TEST(GpuRefusals, OfMemoryBeforeItIsAskedFor) {
   const auto text = [](std::vector<int> devices, uint64_t particles, uint64_t cells) {
-    return refusal([&] { require_memory({devices, 128}, particles, cells, 200); });
+    return refused_with([&] { require_memory({devices, 128}, particles, cells, 200); });
   };
   EXPECT_EQ(text({0}, 1000, 1000), "accepted");
   const std::regex words(

@@ -18,6 +18,7 @@
 #include "model/program/integer_program.h"
 #include "tests/gpu/host_compiler.h"
 #include "tests/support/cases.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -157,14 +158,11 @@ TEST(CompiledRounds, CudaTakesTheText) {
     const gpu::RoundsText text = gpu::text_of(plan.program->program, sizeof(gpu::RoundsFrame));
     EXPECT_GT(nvrtc->compiled(text.source, gpu::round_headers(), "sm_90").size(), 1000u);
   }
-  try {
-    nvrtc->compiled("__device__ int wrong = nothing;\n", {}, "sm_90");
-    ADD_FAILURE() << "compiled";
-  } catch (const gpu::NvrtcError& e) {
-    EXPECT_EQ(std::string(e.what()), "CUDA's compiler " + nvrtc->version() +
-                                         ": NVRTC_ERROR_COMPILATION: rounds.cu(1): error: identifier "
-                                         "\"nothing\" is undefined");
-  }
+  EXPECT_EQ(refused_with<gpu::NvrtcError>(
+                [&] { nvrtc->compiled("__device__ int wrong = nothing;\n", {}, "sm_90"); }),
+            "CUDA's compiler " + nvrtc->version() +
+                ": NVRTC_ERROR_COMPILATION: rounds.cu(1): error: identifier "
+                "\"nothing\" is undefined");
 }
 
 // What was compiled is kept, by all that it is made of.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "model/contract/golden.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -128,12 +129,7 @@ TEST(GoldenBonds, WrittenByOneEndAloneAreRefused) {
   const auto refusal = [](const std::function<void(FixedProgram&)>& change) {
     FixedProgram program = worn();
     change(program);
-    try {
-      graph::check(program);
-    } catch (const std::logic_error& e) {
-      return std::string(e.what());
-    }
-    return std::string("taken");
+    return refused_with<std::logic_error>([&] { graph::check(program); });
   };
   const auto hardness = [](FixedProgram& p) -> graph::Node& {
     return *std::ranges::find(p.rounds[0].pair.nodes, Source::bond_constant, &graph::Node::source);

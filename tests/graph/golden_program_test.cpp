@@ -8,6 +8,7 @@
 #include "model/base/fixed_math.h"
 #include "model/contract/golden.h"
 #include "tests/support/dice.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -172,12 +173,7 @@ TEST(Program, ThatDoesNotHoldTogetherIsRefused) {
   const auto refusal = [](const std::function<void(FixedProgram&)>& change) {
     FixedProgram program = heat();
     change(program);
-    try {
-      graph::check(program);
-    } catch (const std::logic_error& e) {
-      return std::string(e.what());
-    }
-    return std::string("taken");
+    return refused_with<std::logic_error>([&] { graph::check(program); });
   };
   EXPECT_EQ(refusal([](auto& p) { p.fields[0].range.high = 9; }), "field n lies in [0, 107], beyond [0, 9]");
   EXPECT_EQ(refusal([](auto& p) { p.rounds[0].when = 1000; }), "when: no such node");

@@ -11,12 +11,12 @@
 #include <fstream>
 #include <memory>
 #include <random>
-#include <sstream>
 
 #include "emu/verilated/compile.h"
 #include "emu/verilated/sources.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/fixed_math.h"
+#include "model/base/output.h"
 #include "model/contract/law.h"
 #include "tests/rtl/block_lanes.h"
 #include "tests/rtl/block_stimuli.h"
@@ -106,13 +106,6 @@ int exact_sum_bits(const Plan& plan) {
 }
 
 // --- The compiled blocks -----------------------------------------------------------------------------------
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 // In a file of rtl/: `from`, once, becomes `to`.
 struct Edit {

@@ -12,6 +12,7 @@
 #include "model/program/potential_file.h"
 #include "model/run/rounds_run.h"
 #include "tests/rules/metal.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -268,23 +269,14 @@ TEST(EmbeddedAtoms, ForcesAreTheSlopeOfTheEnergy) {
   EXPECT_GT(f[0].norm() / kEv * test::kAngstrom, 0.1);
 }
 
-std::string scene_refusal(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "none";
-}
-
 TEST(EmbeddedAtoms, AnAtomBeyondTheTableIsNamed) {
   const Scene scene = metal_scene(kOwnFile, 3.615, 3);
   // A third of the distance: a density of some thousand, of a table that ends at 100.
   test::Crystal crystal{scene.body, scene.periodic};
   for (Vec3& x : crystal.body.x) x /= 2;
   crystal.periodic.extent.setZero();
-  const std::string said =
-      scene_refusal([&] { make_rounds_engine(scene.rule, crystal.body, crystal.periodic, {}); });
+  const std::string said = refused_with<std::exception>(
+      [&] { make_rounds_engine(scene.rule, crystal.body, crystal.periodic, {}); });
   EXPECT_NE(said.find("the embedding of Cu is asked for at"), std::string::npos) << said;
   EXPECT_NE(said.find("and its table ends at 99.9"), std::string::npos) << said;
   EXPECT_EQ(said.find("particle "), 0u) << said;
@@ -308,7 +300,7 @@ TEST(EmbeddedAtoms, TheHashBindsTheFile) {
 
 TEST(EmbeddedAtoms, WhatIsWrongIsSaidAtItsPlace) {
   const auto has = [](const std::string& potential, const std::string& what) {
-    const std::string said = scene_refusal([&] { metal_scene(potential, 3.615, 3); });
+    const std::string said = refused_with<std::exception>([&] { metal_scene(potential, 3.615, 3); });
     EXPECT_NE(said.find(what), std::string::npos) << said;
   };
   has("", "test.toml:4:47: a potential needs its 'file'");
@@ -321,7 +313,7 @@ TEST(EmbeddedAtoms, WhatIsWrongIsSaidAtItsPlace) {
   has("file = \"texts/eam.toml\"", "neither a setfl file nor a funcfl file");
   has("file = \"texts/none.eam\"", "none.eam");
   const auto own = [&](const std::string& keys) {
-    return scene_refusal([&] {
+    return refused_with<std::exception>([&] {
       parse_scene(
           "mass = \"63.546 u\"\nbox = { size = \"[2, 2, 2] nm\" }\nparticle = [ { position = \"[1, 1, 1] "
           "nm\" } ]\n"
@@ -336,7 +328,7 @@ TEST(EmbeddedAtoms, WhatIsWrongIsSaidAtItsPlace) {
   };
   const std::string round = "[[rule.round]]\nsum.force = ";
   told("reach = \"5 angstrom\"\n" + round + "\"slope(pair, r) * d / r\"\n", "beyond the cutoff");
-  told("reach = \"cutoff\"\n" + round + "\"slope(pair, r) * d / r\"\n", "none");
+  told("reach = \"cutoff\"\n" + round + "\"slope(pair, r) * d / r\"\n", "accepted");
   told("reach = \"cutoff\"\n" + round + "\"pair(r) * d\"\n", "must be a vector of newtons");
   told("reach = \"cutoff\"\n" + round + "\"slope(pears, r) * d / r\"\n",
        "takes the name of a table's function");

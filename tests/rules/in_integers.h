@@ -13,6 +13,7 @@
 #include "model/run/integer_run.h"
 #include "model/scene/first_step.h"
 #include "model/scene/scene.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 
@@ -71,12 +72,7 @@ inline std::string small_block(const std::string& run) {
 }
 
 inline std::string integer_refusal(const std::string& text) {
-  try {
-    const InIntegers made(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
+  return refused_with([&] { const InIntegers made(text); });
 }
 
 }  // namespace cuboct

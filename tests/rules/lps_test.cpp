@@ -10,6 +10,7 @@
 
 #include "model/base/error.h"
 #include "tests/rules/lps_body.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -181,12 +182,7 @@ TEST(Lps, SlitsCutWhatPassesThroughThem) {
 }
 
 std::string refusal(const LpsMaterial& m, const Body& body) {
-  try {
-    LpsBody lps(m, simple_cubic_bonds(1, 3), body);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
+  return refused_with([&] { LpsBody lps(m, simple_cubic_bonds(1, 3), body); });
 }
 
 TEST(Lps, BadMaterialsAndBodiesAreRefusedWithTheirPlace) {

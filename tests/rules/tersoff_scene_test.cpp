@@ -13,6 +13,7 @@
 #include "model/run/rounds_run.h"
 #include "model/run/static_engine.h"
 #include "model/scene/scene.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -220,12 +221,7 @@ TEST(TersoffScene, StaticLoadingFindsTheModulus) {
 }
 
 std::string carbon_refusal(const std::string& text) {
-  try {
-    parse_scene(text, "s.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
+  return refused_with([&] { parse_scene(text, "s.toml"); });
 }
 
 // The set of 1988 in kcal/mol: the energy of silicon is that of the set in eV, -4.630 eV an atom.
@@ -264,7 +260,7 @@ TEST(TersoffScene, WhatCannotBeIsRefusedAtItsKey) {
   const auto of_file = [&](const std::string& rule) {
     return carbon(kSheet, "", "file = \"" + path + "\"\n" + rule);
   };
-  EXPECT_EQ(carbon_refusal(of_file("element = \"C\"")), "none");
+  EXPECT_EQ(carbon_refusal(of_file("element = \"C\"")), "accepted");
   has(of_file("element = \"Si\""), "s.toml:7:11", "unknown element 'Si'");
   has(of_file("element = \"C\"\npotential = \"c_1989\""), "s.toml:", "not both");
   has(carbon(kSheet, "", "file = \"nowhere.tersoff\"\nelement = \"C\""), "s.toml:6:8",

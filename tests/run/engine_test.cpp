@@ -9,12 +9,14 @@
 #include <csignal>
 #include <filesystem>
 
+#include "hw/engine/scene_engine.h"
 #include "model/base/interrupt.h"
 #include "model/base/steps.h"
 #include "model/config/config.h"
 #include "model/run/golden_engine.h"
 #include "model/run/reference_engine.h"
 #include "tests/run/kinds.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
@@ -290,12 +292,8 @@ void EveryEngine::go_on(const Bed& bed, uint64_t steps, const std::vector<uint64
   };
   const EngineKind kind = GetParam().make(bed, request);
   if (!kind.saves) {
-    try {
-      record(bed.scene, kind, request);
-      FAIL();
-    } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()), "the " + kind.name + " engine leaves no checkpoints");
-    }
+    EXPECT_EQ(refused_with([&] { record(bed.scene, kind, request); }),
+              "the " + kind.name + " engine leaves no checkpoints");
     return;
   }
   EXPECT_THROW(record(bed.scene, kind, request), Killed);
@@ -316,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryEngine, testing::ValuesIn(fixed_kinds()),
 TEST(RealEngines, AreRecordedAlike) {
   Bed bed = bed_of("scenes/boards/grips.toml");
   const RunRequest request = everything(20);
-  const Recorded reference = record(bed.scene, reference_kind(bed.scene, bed.plan, {}), request);
+  const Recorded reference = record(bed.scene, scene_reference_kind(bed.scene, bed.plan, {}), request);
   bed.gpu.arithmetic = gpu::Arithmetic::float64;
   const Recorded device = record(bed.scene, gpu::gpu_kind(bed.scene, bed.plan, bed.gpu), request);
   for (const Recorded* run : {&reference, &device}) {
@@ -335,7 +333,7 @@ TEST(RealEngines, CountTheSameBrokenBonds) {
   const Bed bed = torn();
   RunRequest request = everything(12);
   request.probes = every_so_often(2, 12);
-  const Recorded run = record(bed.scene, reference_kind(bed.scene, bed.plan, {}), request);
+  const Recorded run = record(bed.scene, scene_reference_kind(bed.scene, bed.plan, {}), request);
   expect_torn(bed, run.trace.curves);
 }
 
@@ -344,7 +342,7 @@ TEST(RealEngines, EndWhereAPositionIsLost) {
   Scene scene = read_scene(kRoot + "/scenes/boards/grips.toml");
   const Plan plan = plan_of(scene, read_arch(kRoot + "/scenes/archs/board.toml"));
   scene.rule.dt *= 1e160;
-  const Recorded run = record(scene, reference_kind(scene, plan, {}), everything(20));
+  const Recorded run = record(scene, scene_reference_kind(scene, plan, {}), everything(20));
   ASSERT_TRUE(run.trace.stop);
   EXPECT_EQ(run.trace.stop->fault, Fault::none);
   EXPECT_LT(run.trace.steps(), 20u);

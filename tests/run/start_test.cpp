@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "hw/engine/scene_engine.h"
 #include "model/base/error.h"
 #include "model/base/output.h"
 #include "model/base/steps.h"
@@ -184,7 +185,7 @@ TEST(RealStarts, InTwoPartsAsInOne) {
       const std::string path = kTree + "/scenes/" + name + ".toml";
       const RealOptions options{.precision = precision};
       const auto run = [&](const Bed& bed, uint64_t steps) {
-        return record(bed.scene, reference_kind(bed.scene, bed.plan, options), of_steps(steps));
+        return record(bed.scene, scene_reference_kind(bed.scene, bed.plan, options), of_steps(steps));
       };
       const Bed whole_bed = bed_of(read_scene(path));
       const Recorded whole = run(whole_bed, 21);
@@ -243,7 +244,7 @@ Recorded expect_goes_on(const Bed& bed, const EngineKind& kind, const EngineKind
 
 TEST(RealStarts, GoOnFromACheckpoint) {
   const Bed bed = bed_of(read_scene(kTree + "/scenes/failures/stiff_hold_healthy.toml"));
-  const EngineKind kind = reference_kind(bed.scene, bed.plan, {});
+  const EngineKind kind = scene_reference_kind(bed.scene, bed.plan, {});
   expect_goes_on(bed, kind, kind, 10, 40);
 }
 
@@ -255,7 +256,7 @@ TEST(RealStarts, StaticLoadingGoesOnFromACheckpoint) {
     std::string text = read_text(path);
     text.replace(text.find("\"moved\""), 7, pull);
     const Bed bed = bed_of(parse_scene(text, path));
-    const EngineKind kind = static_kind(bed.scene, bed.plan, {});
+    const EngineKind kind = scene_reference_kind(bed.scene, bed.plan, {});
     const uint64_t every = bed.scene.loading->every;
     expect_goes_on(bed, kind, kind, 6 * every, 10 * every);
   }

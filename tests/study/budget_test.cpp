@@ -8,13 +8,14 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <tuple>
 
 #include "cli/study/budget.h"
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
+#include "model/base/output.h"
 #include "study/sweep/cost.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::study {
 namespace {
@@ -81,13 +82,6 @@ arithmetic = ["fixed", "float64"]
 difference_frac = [8, 11, 16]
 index_bits = [3, 6, 9]
 )";
-
-std::string read(const fs::path& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 class Budget : public testing::Test {
  protected:
@@ -269,23 +263,14 @@ TEST_F(Budget, TheReport) {
         "\ndt_safety ", "\nindex_bits ", "\nfinest settings ", "\nsum ", "\nas measured: ", "\ncost: ",
         "\ntime step: ", " of that of the study's own settings (", "/cheapest.toml --arch "})
     EXPECT_NE(out.find(part), std::string::npos) << part << "\n" << out;
-  const std::string scene = read(dir_ / "cheapest.toml");
+  const std::string scene = read_text(dir_ / "cheapest.toml");
   EXPECT_EQ(scene.find("# Chosen by `cuboct explore "), 0u);
   EXPECT_NE(scene.find("--error 5% --figure breath`: "), std::string::npos);
   EXPECT_NO_THROW(read_base((dir_ / "cheapest.toml").string(), (dir_ / "cheapest_arch.toml").string()));
 }
 
-std::string message(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST_F(Budget, WrongQuestions) {
-  const auto error = [](const char* text) { return message([&] { read_error_budget(text); }); };
+  const auto error = [](const char* text) { return refused_with([&] { read_error_budget(text); }); };
   for (const char* text : {"", "%", "abc", "1 %", "1%%", "nan", "inf", "0x1", "1e"})
     EXPECT_EQ(error(text), "'" + std::string(text) +
                                "' is no error\n  hint: a percentage or a share: --error 1% or --error 0.01");
@@ -300,9 +285,9 @@ TEST_F(Budget, WrongQuestions) {
   EXPECT_DOUBLE_EQ(read_error_budget("1e-3"), 0.001);
 
   const Study s = study();
-  EXPECT_EQ(message([&] { figure_named(s, ""); }),
+  EXPECT_EQ(refused_with([&] { figure_named(s, ""); }),
             s.path + ": which figure?\n  hint: --figure last or breath");
-  EXPECT_EQ(message([&] { figure_named(s, "breat"); }),
+  EXPECT_EQ(refused_with([&] { figure_named(s, "breat"); }),
             s.path + ": no figure 'breat'\n  hint: did you mean 'breath'?");
   EXPECT_EQ(figure_named(s, "breath"), 1u);
 
@@ -313,17 +298,17 @@ TEST_F(Budget, WrongQuestions) {
   truth.rungs[0].figures = {0.0, 0.98};
   truth.rungs[1].figures = {0.0, 1.0};
   Store memory = store(s);
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(refused_with([&] {
               keep_budget(s, truth, memory, {0, 0.01, 1, false});
             }),
             s.path + ": the figure 'last' of the truth is 0: no relative error can be told");
-  EXPECT_EQ(message([&] { keep_budget(s, truth, memory, question(0.01)); }),
+  EXPECT_EQ(refused_with([&] { keep_budget(s, truth, memory, question(0.01)); }),
             s.path +
                 ": the truth of 'breath' is known to 0.02 only, worse than the budget of 0.01\n"
                 "  hint: a smaller 'tolerance' or more 'rungs' in [truth]");
   Study plain = s;
   plain.search.clear();
-  EXPECT_EQ(message([&] { check_budget(plain, "1%", "breath"); }),
+  EXPECT_EQ(refused_with([&] { check_budget(plain, "1%", "breath"); }),
             s.path +
                 ": no [search] to choose from\n"
                 "  hint: list settings from cheap to dear, e.g. [search] dt_safety = [0.8, 0.4, 0.2]");
@@ -335,7 +320,7 @@ TEST_F(Budget, NotchesOutOfOrder) {
   const Study s = study(text);
   const Truth& truth = truth_of(s);
   Store memory = store(s);
-  EXPECT_EQ(message([&] { keep_budget(s, truth, memory, question(0.05)); }),
+  EXPECT_EQ(refused_with([&] { keep_budget(s, truth, memory, question(0.05)); }),
             s.path +
                 ":22:14: '9' of index_bits costs more than '6' after it\n"
                 "  hint: notches go from cheap to dear");

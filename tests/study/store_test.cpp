@@ -18,6 +18,7 @@
 #include "study/sweep/truth_bytes.h"
 #include "tests/study/rows.h"
 #include "tests/study/small_study.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::study {
 namespace {
@@ -163,12 +164,7 @@ TEST(Store, RefusesAnotherStudyAndASecondProcess) {
   const Study study = read_study(files.study(kStudy));
   const std::string path = files.path("results.db");
   const auto error_of = [&](const Study& other) -> std::string {
-    try {
-      Store store(path, other);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return refused_with([&] { Store store(path, other); });
   };
   {
     const Store store(path, study);
@@ -179,7 +175,7 @@ TEST(Store, RefusesAnotherStudyAndASecondProcess) {
             path +
                 ": these are results of another study: its scene, arch, figures or times were others\n"
                 "  hint: take another directory, or remove this one's results.db");
-  EXPECT_EQ(error_of(study), "no error");
+  EXPECT_EQ(error_of(study), "accepted");
 }
 
 TEST(Store, TakesInRowsOfAnotherMachine) {
@@ -220,12 +216,7 @@ TEST(Store, SaysOfAFileThatItIsNone) {
   Store store(files.path("results.db"), study);
   const auto refusal = [&](const std::string& text) {
     std::ofstream(files.path("other.db"), std::ios::binary) << text;
-    try {
-      store.add(files.path("other.db"));
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("taken");
+    return refused_with([&] { store.add(files.path("other.db")); });
   };
   const std::string hint =
       "\n  hint: 'cuboct explore' makes such a file: remove this one and begin again, or take another";
@@ -251,22 +242,14 @@ TEST(Store, APointWithoutItsFiguresIsRefused) {
     EXPECT_EQ(store.errors(study.points[0])->errors.values, std::vector{0.5});
   }
   rows(path, "DELETE FROM figures");
-  const auto refusal = [](const std::function<void()>& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("taken");
-  };
   const std::string expected = path +
                                ": a point has 0 figures, the study 1\n  hint: it is damaged: take another "
                                "--out DIR, or remove the file and begin again";
-  EXPECT_EQ(refusal([&] { Store(path, study).errors(study.points[0]); }), expected);
-  EXPECT_EQ(refusal([&] { Store(path, study).results(); }), expected);
+  EXPECT_EQ(refused_with([&] { Store(path, study).errors(study.points[0]); }), expected);
+  EXPECT_EQ(refused_with([&] { Store(path, study).results(); }), expected);
   rows(path, "DROP TABLE figures");
   EXPECT_EQ(
-      refusal([&] { Store(path, study); }),
+      refused_with([&] { Store(path, study); }),
       path +
           " holds no results of a study as cuboct keeps them\n  hint: 'cuboct explore' makes such a file: "
           "remove this one and begin again, or take another");
@@ -284,13 +267,10 @@ TEST(Store, RunsNothingThatAnothersFileSays) {
     change();
     std::string told[2];
     for (const bool added : {true, false}) {
-      try {
+      told[added] = refused_with([&] {
         Store store(added ? path : other, study);
         if (added) store.add(other);
-        told[added] = "taken";
-      } catch (const InputError& error) {
-        told[added] = error.what();
-      }
+      });
     }
     EXPECT_EQ(told[0], told[1]);
     std::filesystem::remove(other + "-journal");
@@ -298,7 +278,7 @@ TEST(Store, RunsNothingThatAnothersFileSays) {
   };
   const std::string hint =
       "\n  hint: 'cuboct explore' makes such a file: remove this one and begin again, or take another";
-  EXPECT_EQ(opened([] {}), "taken");
+  EXPECT_EQ(opened([] {}), "accepted");
   for (const char* schema :
        {"CREATE VIEW more AS SELECT 1", "CREATE TRIGGER t AFTER INSERT ON meta BEGIN DELETE FROM points; END",
         "CREATE INDEX i ON points(hex(zeroblob(length(numbers))))",
@@ -351,13 +331,9 @@ TEST(Store, AStrangersJournalIsRefused) {
   const std::string path = files.path("results.db");
   { const Store store(path, study); }
   std::ofstream(path + "-journal") << "journal";
-  try {
-    const Store store(path, study);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), path + "-journal is not of cuboct, and would change " + path +
-                                             "\n  hint: remove it, or both files");
-  }
+  EXPECT_EQ(
+      refused_with([&] { const Store store(path, study); }),
+      path + "-journal is not of cuboct, and would change " + path + "\n  hint: remove it, or both files");
   EXPECT_EQ(read_text(path + "-journal"), "journal");
 }
 

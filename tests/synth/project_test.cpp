@@ -15,6 +15,7 @@
 #include "synth/project.h"
 #include "synth/script.h"
 #include "synth/tool.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::synth {
 namespace {
@@ -69,12 +70,7 @@ TEST_F(Refuse, NamesThatAScriptWouldRun) {
   const auto with_module = [&](const std::string& name) {
     std::ofstream(design) << R"({"modules": {")" << name
                           << R"(": {"attributes": {"top": "1"}, "ports": {}, "cells": {}}}})";
-    try {
-      read_design(design);
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return refused_with([&] { read_design(design); });
   };
   EXPECT_EQ(with_module("cuboct_node"), "accepted");
   EXPECT_EQ(with_module("$paramod$1f\\\\cuboct_fifo"), "accepted");

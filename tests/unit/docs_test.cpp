@@ -15,6 +15,8 @@
 
 #include "hw/arch/arch.h"
 #include "model/base/error.h"
+#include "model/base/output.h"
+#include "model/base/unit_names.h"
 #include "model/config/config.h"
 #include "model/scene/scene.h"
 #ifdef CUBOCT_HAS_STUDIES
@@ -29,13 +31,6 @@ namespace cuboct {
 namespace {
 
 const std::string kRoot = CUBOCT_SOURCE_DIR;
-
-std::string text_of(const std::string& path) {
-  std::ifstream in(path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 // The sections "## `[name]`..." of a page, the top level under "Top level" and what precedes it; section by
 // name.
@@ -176,8 +171,16 @@ std::set<std::string> scene_keys() {
   return keys;
 }
 
+TEST(Docs, UnitsAreThoseOfTheReader) {
+  const std::string page = read_text(kRoot + "/docs/user/scene.md");
+  std::smatch listed;
+  ASSERT_TRUE(std::regex_search(page, listed, std::regex("Named units: `([^`]*)`")));
+  EXPECT_EQ(listed[1], fmt::format("{}", fmt::join(named_units(), " ")));
+}
+
 TEST(Docs, EverySceneKeyIsDocumentedAndViceVersa) {
-  const std::string page = text_of(kRoot + "/docs/user/scene.md") + text_of(kRoot + "/docs/user/rules.md");
+  const std::string page =
+      read_text(kRoot + "/docs/user/scene.md") + read_text(kRoot + "/docs/user/rules.md");
   const auto keys = scene_keys();
   EXPECT_GT(keys.size(), 80U);
   expect_documented(page, keys);
@@ -188,7 +191,7 @@ TEST(Docs, EverySceneKeyIsDocumentedAndViceVersa) {
 }
 
 TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
-  const std::string page = text_of(kRoot + "/docs/user/arch.md");
+  const std::string page = read_text(kRoot + "/docs/user/arch.md");
   std::set<std::string> keys;
   record_config_keys(&keys);
   read_arch(kRoot + "/scenes/archs/default.toml");
@@ -204,7 +207,7 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
 #ifdef CUBOCT_HAS_STUDIES
 // Keys of studies: those of one that takes every branch, less what the scene and arch inside it ask for.
 TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
-  const std::string page = text_of(kRoot + "/docs/user/study.md");
+  const std::string page = read_text(kRoot + "/docs/user/study.md");
   std::set<std::string> of_scene = scene_keys();
   const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_study_test.toml";
   std::ofstream(path) << "scene = \"" << kRoot << "/scenes/coupon.toml\"\narch = \"" << kRoot
@@ -236,7 +239,7 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
 #ifdef CUBOCT_HAS_STUDIES
 // Keys that studies of machines have beside those of other studies.
 TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
-  const std::string page = text_of(kRoot + "/docs/user/machines.md");
+  const std::string page = read_text(kRoot + "/docs/user/machines.md");
   const auto path =
       std::filesystem::temp_directory_path() / fmt::format("cuboct_docs_machines_{}.toml", getpid());
   std::ofstream(path) << "scene = \"" << kRoot << "/scenes/undamped_block.toml\"\n"
@@ -267,7 +270,7 @@ TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
 
 #ifdef CUBOCT_HAS_FITS
 TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
-  const std::string page = text_of(kRoot + "/docs/user/fit.md");
+  const std::string page = read_text(kRoot + "/docs/user/fit.md");
   std::set<std::string> keys, asked;
   const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_fit_test.toml";
   const std::string scene = kRoot + "/scenes/studies/fit_bar_scene.toml",
@@ -320,7 +323,7 @@ TEST(Docs, ArchRangesAreThoseOfTheReader) {
   };
   static const std::regex row(R"(\| `([a-z_]+)` \|[^|0-9]*(\d+) to (\d+))");
   int rows = 0;
-  for (const auto& [section, text] : sections(text_of(kRoot + "/docs/user/arch.md"))) {
+  for (const auto& [section, text] : sections(read_text(kRoot + "/docs/user/arch.md"))) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
       std::smatch match;

@@ -9,6 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/contract/law.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -215,12 +216,8 @@ TEST(RelaxedPitch, FindsThePitchOfAPresetAndRefusesWhereThereIsNone) {
   EXPECT_NEAR(relaxed_pitch(*law, 0.93e-4), 1e-4, 1e-19);
   EXPECT_NEAR(relaxed_pitch(*law, 1.07e-4), 1e-4, 1e-19);
   const auto push = spline_law({1, 2}, {1, 0}, Interpolation::monotone_cubic, 1);
-  try {
-    relaxed_pitch(*push, 1.5);
-    FAIL() << "found a pitch";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "the packing has no pitch of zero pressure between 0.75 m and 3 m");
-  }
+  EXPECT_EQ(refused_with([&] { relaxed_pitch(*push, 1.5); }),
+            "the packing has no pitch of zero pressure between 0.75 m and 3 m");
 }
 
 }  // namespace

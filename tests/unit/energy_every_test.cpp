@@ -7,6 +7,7 @@
 #include "model/base/error.h"
 #include "model/config/config.h"
 #include "model/scene/scene.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -64,12 +65,8 @@ TEST(EnergyEvery, OfAStageReplacesThatOfTheRun) {
 }
 
 TEST(EnergyEvery, NeedsReadings) {
-  try {
-    block("steps = 10\nprobe_every = 0\nenergy_every = 5");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "s.toml:6:1: 'energy_every' needs readings: 'probe_every' is 0");
-  }
+  EXPECT_EQ(refused_with([&] { block("steps = 10\nprobe_every = 0\nenergy_every = 5"); }),
+            "s.toml:6:1: 'energy_every' needs readings: 'probe_every' is 0");
 }
 
 }  // namespace

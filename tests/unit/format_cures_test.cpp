@@ -11,6 +11,7 @@
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/contract/quantise.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -37,14 +38,9 @@ std::string moved_at(const std::string& velocity) {
          kAtItsEnd;
 }
 
-// What is said against a machine for the scene; nothing where there is one.
+// What is said against a machine for the scene.
 std::string refused_as(const std::string& scene, const Arch& arch = {}) {
-  try {
-    plan_of(parse_scene(scene, "scene.toml"), arch);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return refused_with([&] { plan_of(parse_scene(scene, "scene.toml"), arch); });
 }
 
 // The parts of the hint that the pattern has in brackets.
@@ -61,9 +57,10 @@ TEST(FormatCures, ADtThatHolds) {
   const std::string fast = moved_at("[9e5, 0, 0] m/s");
   const std::string dt =
       hint_in(refused_as(fast + kForTwoSteps), "a dt of at most ([0-9.e-]+) s holds it")[0];
-  EXPECT_EQ(refused_as(fast + fmt::format("[run]\ndt = \"{} s\"\nsteps = 2\n", dt)), "");
+  EXPECT_EQ(refused_as(fast + fmt::format("[run]\ndt = \"{} s\"\nsteps = 2\n", dt)), "accepted");
   // And not by far less than need be.
-  EXPECT_NE(refused_as(fast + fmt::format("[run]\ndt = \"{} s\"\nsteps = 2\n", 1.02 * std::stod(dt))), "");
+  EXPECT_NE(refused_as(fast + fmt::format("[run]\ndt = \"{} s\"\nsteps = 2\n", 1.02 * std::stod(dt))),
+            "accepted");
 }
 
 TEST(FormatCures, GuardBitsThatKeepWhatIsSlow) {
@@ -72,9 +69,9 @@ TEST(FormatCures, GuardBitsThatKeepWhatIsSlow) {
     Arch arch;
     arch.widths.guard =
         std::stoi(hint_in(refused_as(scene), "guard = ([0-9]+) in the arch file keeps it")[0]);
-    EXPECT_EQ(refused_as(scene, arch), "");
+    EXPECT_EQ(refused_as(scene, arch), "accepted");
     arch.widths.guard -= 2;
-    EXPECT_NE(refused_as(scene, arch), "");
+    EXPECT_NE(refused_as(scene, arch), "accepted");
   }
 }
 
@@ -139,8 +136,8 @@ region = {{ shape = "intersection", of = ["low", "side"] }}
                              kp, kd));
   };
   const double kp = std::stod(gains[0]), kd = 0.3;
-  EXPECT_EQ(refused_as(own(kp, kd)), "");
-  EXPECT_NE(refused_as(own(kp / 100, kd)), "");
+  EXPECT_EQ(refused_as(own(kp, kd)), "accepted");
+  EXPECT_NE(refused_as(own(kp / 100, kd)), "accepted");
 }
 
 TEST(FormatCures, WidthsForKicks) {
@@ -170,17 +167,12 @@ steps = 2
 )";
   Arch guard;
   guard.widths.guard = std::stoi(hint_in(refused_as(scene), "guard = ([0-9]+) in the arch file holds it")[0]);
-  EXPECT_EQ(refused_as(scene, guard), "");
+  EXPECT_EQ(refused_as(scene, guard), "accepted");
   // Velocities that are too fine for a table of 18 bits.
   const Scene bar = parse_scene(moved_at("[1, 0, 0] m/s") + kForTwoSteps, "scene.toml");
   const double edge = cell_edge_of(bar, Arch{});
   const auto said = [&](const Widths& widths) -> std::string {
-    try {
-      quantise(bar.rule, edge, widths, {});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+    return refused_with([&] { quantise(bar.rule, edge, widths, {}); });
   };
   Widths fine;
   fine.guard = 26;
@@ -190,10 +182,10 @@ steps = 2
       hint_in(said(fine), "strength_bits = ([0-9]+) or guard = ([0-9]+) in the arch file holds it");
   Widths wider = fine, coarser = fine;
   wider.strength_bits = std::stoi(either[0]);
-  EXPECT_EQ(said(wider), "");
+  EXPECT_EQ(said(wider), "accepted");
   coarser.guard = std::stoi(either[1]);
   coarser.velocity_bits = coarser.velocity_frac() + 1;
-  EXPECT_EQ(said(coarser), "");
+  EXPECT_EQ(said(coarser), "accepted");
 }
 
 TEST(FormatCures, DampingThatFits) {
@@ -206,9 +198,9 @@ TEST(FormatCures, DampingThatFits) {
       "relative_velocity_frac = ([0-9]+), relative_velocity_bits = ([0-9]+) in the arch file hold it");
   arch.widths.relative_velocity_frac = std::stoi(wider[0]);
   arch.widths.relative_velocity_bits = std::stoi(wider[1]);
-  EXPECT_EQ(refused_as(damped(100), arch), "");
+  EXPECT_EQ(refused_as(damped(100), arch), "accepted");
   const auto share = hint_in(refused_as(damped(1e6)), "damping of at most ([0-9.e-]+) of this holds it");
-  EXPECT_EQ(refused_as(damped(1e6 * std::stod(share[0]))), "");
+  EXPECT_EQ(refused_as(damped(1e6 * std::stod(share[0]))), "accepted");
 }
 
 TEST(FormatCures, EntriesForOctaves) {
@@ -218,9 +210,9 @@ TEST(FormatCures, EntriesForOctaves) {
   const auto bits = hint_in(refused_as(kCuredBar + kForTwoSteps, arch),
                             "index_bits = ([0-9]+), or shape = \"uniform\", in the arch file's \\[table\\]");
   arch.table.index_bits = std::stoi(bits[0]);
-  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "");
+  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "accepted");
   arch.table = {.shape = TableChoice::Shape::uniform, .index_bits = 2};
-  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "");
+  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "accepted");
 }
 
 // A cell that holds the whole bar has more particles than a node.
@@ -230,11 +222,11 @@ TEST(FormatCures, ACapacityThatANodeCanHave) {
   hint_in(refused_as(std::regex_replace(kCuredBar, std::regex("0.5 mm"), "0.35 mm") + kForTwoSteps, arch),
           "a cell holds at most 256: a shorter node.cell_edge");
   arch.cell_edge = 1.5e-3;
-  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "");
+  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "accepted");
   arch.capacity = 4;
   arch.capacity = std::stoi(hint_in(refused_as(kCuredBar + kForTwoSteps, arch),
                                     "set node.capacity to at least ([0-9]+) in the arch file")[0]);
-  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "");
+  EXPECT_EQ(refused_as(kCuredBar + kForTwoSteps, arch), "accepted");
 }
 
 // Machines whose parts do not go together: what is asked for is set, one after the other.
@@ -245,7 +237,7 @@ TEST(FormatCures, PartsThatGoTogether) {
       const std::string said =
           refused_as(kCuredBar + kForTwoSteps, parse_arch("name = \"a\"\n[node]\n" + node, "arch.toml"));
       std::smatch set;
-      if (said.empty()) break;
+      if (said == "accepted") break;
       if (!std::regex_search(
               said, set,
               std::regex("set (node\\.)?([a-z_]+) (?:= |to at most )([^\n]*?)( in the arch file)?(\n|$)"))) {

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "model/base/base64.h"
 #include "model/base/error.h"
+#include "model/base/output.h"
 #include "model/trace/vtk_frames.h"
 #include "tests/support/file_limit.h"
 
@@ -21,13 +21,6 @@ namespace cuboct {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 std::string unpacked(const fs::path& path) {
   std::string text;
@@ -135,7 +128,7 @@ TEST_F(Frames, ExtendedXyzHoldsBoxColumnsUnitsAndTimes) {
            "broken_bonds:1 "
            "damage:1 flux:J/m^2\" ";
   };
-  EXPECT_EQ(text_of(directory_ / "f.xyz"),
+  EXPECT_EQ(read_text(directory_ / "f.xyz"),
             head("3") +
                 "Step=0 Time=0\n"
                 "X 0 0 0 0 0 delrin - 0 0 0 0.5 0 0 0 0 0 0 0 0 0 1 2 3\n"
@@ -160,7 +153,7 @@ TEST_F(Frames, ExtendedXyzMayBeInTheUnitsOfAse) {
     XyzWriter out((directory_ / "f.xyz").string(), style_, {.ase = true});
     out.add(frame);
   }
-  EXPECT_EQ(text_of(directory_ / "f.xyz"),
+  EXPECT_EQ(read_text(directory_ / "f.xyz"),
             "2\nLattice=\"4 0 0 0 2 0 0 0 5\" Origin=\"-1 -1 -1\" pbc=\"F F F\" "
             "Properties=species:S:1:pos:R:3:id:I:1:type_index:I:1:material:S:1:constraint:S:1:momenta:R:3:" +
                 std::string(kRest) +
@@ -191,13 +184,13 @@ TEST(FrameTypes, ASpeciesIsAnElementOrX) {
 TEST_F(Frames, FieldsThatAreNotThereAreNoNumbers) {
   frames_[0].own.clear();
   write_extended_xyz(directory_ / "f.xyz", {frames_[0]}, style_);
-  EXPECT_TRUE(text_of(directory_ / "f.xyz").ends_with(" nan nan nan nan\n"));
+  EXPECT_TRUE(read_text(directory_ / "f.xyz").ends_with(" nan nan nan nan\n"));
 }
 
 TEST_F(Frames, ReducedUnitsAreCalledSo) {
   style_.reduced = true;
   write_extended_xyz(directory_ / "f.xyz", frames_, style_);
-  EXPECT_NE(text_of(directory_ / "f.xyz")
+  EXPECT_NE(read_text(directory_ / "f.xyz")
                 .find("units=\"Time:reduced Lattice:reduced Origin:reduced pos:reduced "
                       "velo:reduced radius:reduced axial_strain:1 "),
             std::string::npos);
@@ -210,7 +203,7 @@ TEST_F(Frames, ReducedUnitsAreCalledSo) {
 
 TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
   write_vtk(directory_ / "f", frames_, style_);
-  EXPECT_EQ(text_of(directory_ / "f.pvd"),
+  EXPECT_EQ(read_text(directory_ / "f.pvd"),
             "<?xml version=\"1.0\"?>\n"
             "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
             "  <Collection>\n"
@@ -218,7 +211,7 @@ TEST_F(Frames, VtkListsItsFilesAndHoldsTheValues) {
             "    <DataSet timestep=\"0.5\" part=\"0\" file=\"f_000001.vtp\"/>\n"
             "  </Collection>\n"
             "</VTKFile>\n");
-  const std::string vtp = text_of(directory_ / "f_000001.vtp");
+  const std::string vtp = read_text(directory_ / "f_000001.vtp");
   EXPECT_EQ(values_of<float>(vtp, "axial_strain"), (std::vector<float>{0, 0.125f}));
   // In VTK's order: xx, yy, zz, xy, yz, xz.
   EXPECT_EQ(values_of<float>(vtp, "strain"),
@@ -261,7 +254,7 @@ TEST_F(Frames, PackedXyzIsXyz) {
       EXPECT_FALSE(unpacked(directory_ / "f.gz").empty());  // whole as it grows
     }
   }
-  EXPECT_EQ(unpacked(directory_ / "f.gz"), text_of(directory_ / "f.xyz"));
+  EXPECT_EQ(unpacked(directory_ / "f.gz"), read_text(directory_ / "f.xyz"));
 }
 
 // More than the writers' buffers hold: against the array encoded at once, and line by line.
@@ -288,11 +281,11 @@ TEST_F(Frames, LargeFramesAreWhole) {
   }
   style_.own.clear();
   write_vtk(directory_ / "f", {frame}, style_);
-  const std::string vtp = text_of(directory_ / "f_000000.vtp");
+  const std::string vtp = read_text(directory_ / "f_000000.vtp");
   EXPECT_EQ(values_of<double>(vtp, "position"), position);
   EXPECT_EQ(values_of<uint32_t>(vtp, "broken_bonds"), frame.broken);
   write_extended_xyz(directory_ / "f.xyz", {frame}, style_);
-  const std::string xyz = text_of(directory_ / "f.xyz");
+  const std::string xyz = read_text(directory_ / "f.xyz");
   EXPECT_EQ(xyz.substr(xyz.find("Time=0\n") + 7), lines);
 }
 
@@ -311,11 +304,11 @@ TEST_F(Frames, VtkLeavesNoFilesOfALongerRun) {
 TEST_F(Frames, AreThereAsTheyCome) {
   XyzWriter xyz(directory_ / "f.xyz", style_);
   VtkWriter vtk(directory_ / "f", style_);
-  EXPECT_EQ(text_of(directory_ / "f.xyz"), "");
+  EXPECT_EQ(read_text(directory_ / "f.xyz"), "");
   for (size_t k = 0; k < frames_.size(); ++k) {
     xyz.add(frames_[k]);
     vtk.add(frames_[k]);
-    const std::string text = text_of(directory_ / "f.xyz"), list = text_of(directory_ / "f.pvd");
+    const std::string text = read_text(directory_ / "f.xyz"), list = read_text(directory_ / "f.pvd");
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), static_cast<ptrdiff_t>(4 * (k + 1)));
     EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), static_cast<ptrdiff_t>(6 + k));
     EXPECT_TRUE(list.ends_with("</VTKFile>\n"));
@@ -343,11 +336,11 @@ TEST_F(Frames, ThatDoNotFitAreLeftOut) {
     xyz.add(frames_[1]);
     vtk.add(frames_[1]);
   }
-  const std::string text = text_of(directory_ / "f.xyz"), list = text_of(directory_ / "f.pvd");
+  const std::string text = read_text(directory_ / "f.xyz"), list = read_text(directory_ / "f.pvd");
   write_extended_xyz(directory_ / "g.xyz", frames_, style_);
   write_vtk(directory_ / "f", frames_, style_);
-  EXPECT_EQ(text, text_of(directory_ / "g.xyz"));
-  EXPECT_EQ(list, text_of(directory_ / "f.pvd"));
+  EXPECT_EQ(text, read_text(directory_ / "g.xyz"));
+  EXPECT_EQ(list, read_text(directory_ / "f.pvd"));
   size_t files = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(directory_)) ++files;
   EXPECT_EQ(files, 5u);

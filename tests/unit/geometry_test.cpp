@@ -9,6 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/body/regions.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -147,12 +148,7 @@ ShapePtr read(const std::string& text) {
 }
 
 std::string error_of(const std::string& text) {
-  try {
-    read(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refused_with([&] { read(text); });
 }
 
 TEST(Geometry, ReadsNestedShapes) {

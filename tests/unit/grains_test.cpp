@@ -17,6 +17,7 @@
 #include "model/contract/neighbours.h"
 #include "model/scene/scene.h"
 #include "model/solid/moduli.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -198,12 +199,7 @@ std::string scene_text(const std::string& packing, const std::string& box, const
 }
 
 std::string error(const std::string& packing, const std::string& box, const std::string& rest = "") {
-  try {
-    parse_scene(scene_text(packing, box, rest), "a.toml");
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "accepted";
+  return refused_with([&] { parse_scene(scene_text(packing, box, rest), "a.toml"); });
 }
 
 TEST(Grains, WhatCannotBeIsRefusedAtItsKey) {

@@ -20,6 +20,7 @@
 #include "model/scene/scene.h"
 #include "model/trace/trace_file.h"
 #include "model/trace/trace_head.h"
+#include "tests/support/refused_with.h"
 #include "tests/unit/made_trace.h"
 
 namespace cuboct {
@@ -30,16 +31,8 @@ class GuardedTrace : public testing::Test {
   ~GuardedTrace() override { look_for_parts_in({}); }
 
   std::string path(const std::string& name) const { return scratch_.path(name); }
-  static std::string error(const std::function<void()>& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
-  }
   static std::string refusal(const std::string& file) {
-    return error([&] { guarded_trace(file); });
+    return refused_with([&] { guarded_trace(file); });
   }
   // In the place of the program a shell's script.
   std::string refusal_by(const std::string& script) const {
@@ -130,11 +123,11 @@ TEST_F(GuardedTrace, ErrorsAreThoseOfTheReader) {
   std::ofstream(path("text.h5")) << "no HDF5";
   EXPECT_EQ(refusal(path("text.h5")), path("text.h5") + " is not an HDF5 file");
   write_trace(path("t.h5"), made_trace());
-  EXPECT_EQ(error([&] { guarded_left_state(path("t.h5")); }),
+  EXPECT_EQ(refused_with([&] { guarded_left_state(path("t.h5")); }),
             path("t.h5") +
                 " does not say whose particles it holds\n  hint: 'cuboct run --out DIR' leaves a trace that "
                 "does");
-  EXPECT_EQ(error([&] { guarded_rasters(path("t.h5")); }),
+  EXPECT_EQ(refused_with([&] { guarded_rasters(path("t.h5")); }),
             path("t.h5") + " holds no rasters\n  hint: 'cuboct run SCENE --out DIR' makes DIR/rasters.h5");
 }
 

@@ -20,6 +20,7 @@
 #include "model/trace/trace.h"
 #include "model/trace/trace_file.h"
 #include "model/trace/trace_head.h"
+#include "tests/support/refused_with.h"
 #include "tests/unit/made_trace.h"
 
 namespace cuboct {
@@ -94,14 +95,6 @@ class HostileFile : public testing::Test {
     const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     change(file);
     H5Fclose(file);
-  }
-  static std::string error(const std::function<void()>& read) {
-    try {
-      read();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "accepted";
   }
 };
 
@@ -243,28 +236,23 @@ TEST(StateCheck, NumbersAreWithinTheScene) {
   const auto error = [&](const std::function<void(Trace&)>& change) -> std::string {
     Trace changed = trace;
     change(changed);
-    try {
-      check_frames(changed, bounds, "t.h5");
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "accepted";
+    return refused_with([&] { check_frames(changed, bounds, "t.h5"); });
   };
   const std::string at = "t.h5 is no trace of this scene: frame of step 0, particle 1: ";
-  EXPECT_EQ(error([](Trace&) {}), "accepted");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].cell = 2; }), at + "cell 2 is not below 2");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].type = 2; }), at + "type 2 is not below 2");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 3; }), at + "id 3 is not below 3");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 2; }), at + "id 2 stands in row 1");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].x[1] = 256; }),
+  EXPECT_EQ(refused_with([](Trace&) {}), "accepted");
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].cell = 2; }), at + "cell 2 is not below 2");
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].type = 2; }), at + "type 2 is not below 2");
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].id = 3; }), at + "id 3 is not below 3");
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].id = 2; }), at + "id 2 stands in row 1");
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].x[1] = 256; }),
             at + "position 256 is outside its cell");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].x[1] = -1; }),
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].x[1] = -1; }),
             at + "position -1 is outside its cell");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].v[1] = 1 << 19; }),
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].v[1] = 1 << 19; }),
             at + "velocity 524288 is out of 20 bits");
-  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles.pop_back(); }),
+  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles.pop_back(); }),
             "t.h5 is no trace of this scene: the frame of step 0 has 2 particles, the scene 3");
-  EXPECT_EQ(error([](Trace& t) {
+  EXPECT_EQ(refused_with([](Trace& t) {
               t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}, {}});
             }),
             "t.h5 is no trace of this scene: the frame of step 7 has 1 particles, the scene 3");

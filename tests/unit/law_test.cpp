@@ -10,18 +10,10 @@
 #include <unsupported/Eigen/Splines>
 
 #include "model/base/error.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
-
-std::string text_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 struct Named {
   std::string name;
@@ -288,47 +280,48 @@ TEST(Preset, IsAsDocumented) {
 
 TEST(Law, RefusesWithNumbers) {
   using enum Interpolation;
-  EXPECT_EQ(text_of([] { lennard_jones(-1, 1, 2.5, 0.8); }),
+  EXPECT_EQ(refused_with([] { lennard_jones(-1, 1, 2.5, 0.8); }),
             "lennard_jones: epsilon is -1 J, but must be above 0");
-  EXPECT_EQ(text_of([] { lennard_jones(1, NAN, 2.5, 0.8); }),
+  EXPECT_EQ(refused_with([] { lennard_jones(1, NAN, 2.5, 0.8); }),
             "lennard_jones: sigma is nan m, but must be above 0");
-  EXPECT_EQ(text_of([] { lennard_jones(1, 1, 0.5, 0.8); }),
+  EXPECT_EQ(refused_with([] { lennard_jones(1, 1, 0.5, 0.8); }),
             "lennard_jones: core 0.8 m is not below the cutoff 0.5 m");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({1, 2}, {1}, monotone_cubic, 1);
             }),
             "spline_law: 2 distances, but 1 forces");
-  EXPECT_EQ(text_of([] { spline_law({1}, {1}, monotone_cubic, 1); }),
+  EXPECT_EQ(refused_with([] { spline_law({1}, {1}, monotone_cubic, 1); }),
             "spline_law: 1 points, but at least 2 are needed");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({1, 2}, {1, 0}, b_spline, 1);
             }),
             "spline_law: 2 points, but at least 3 are needed");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({1, 2, 2}, {1, 0, 0}, b_spline, 1);
             }),
             "spline_law: the distance of point 3 (2 m) is not above that of point 2 (2 m)");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({1, INFINITY}, {1, 0}, monotone_cubic, 1);
             }),
             "spline_law: point 2 is (inf m, 0 N)");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({-1, 2}, {1, 0}, monotone_cubic, 1);
             }),
             "spline_law: the first distance is -1 m, below 0");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({1, 2}, {1, 0}, monotone_cubic, 0.5);
             }),
             "spline_law: core 0.5 m is below the first distance 1 m\n"
             "  hint: below its core a law is linear; let the points start at the core or below");
-  EXPECT_EQ(text_of([] {
+  EXPECT_EQ(refused_with([] {
               spline_law({0, 2}, {1, 0}, monotone_cubic, 0);
             }),
             "spline_law: core is 0 m, but must be above 0");
-  EXPECT_EQ(text_of([] { preset_law("plastic", 1, 1); }),
+  EXPECT_EQ(refused_with([] { preset_law("plastic", 1, 1); }),
             "unknown preset law 'plastic'\n  hint: the presets are elastic, brittle, ductile and viscous");
-  EXPECT_EQ(text_of([] { preset_law("elastic", 0, 1); }), "preset_law: pitch is 0 m, but must be above 0");
-  EXPECT_EQ(text_of([] { preset_law("elastic", 1, -2); }),
+  EXPECT_EQ(refused_with([] { preset_law("elastic", 0, 1); }),
+            "preset_law: pitch is 0 m, but must be above 0");
+  EXPECT_EQ(refused_with([] { preset_law("elastic", 1, -2); }),
             "preset_law: stiffness is -2 N/m, but must be above 0");
 }
 

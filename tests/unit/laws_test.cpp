@@ -14,6 +14,7 @@
 #include "model/real/reference.h"
 #include "model/solid/dynamical_matrix.h"
 #include "tests/support/block.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -114,12 +115,8 @@ TEST(Laws, GoldenIsTheReferenceWithinItsTables) {
 TEST(Laws, OneThatIsZeroIsTold) {
   Rule rule = three_laws().rule;
   rule.other_laws[1] = std::make_shared<test::BondLaw>(0, 1.3);
-  try {
-    quantise(rule, 1.7, {}, {});
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "the pair law 3 of 3 is zero everywhere inside its cutoff");
-  }
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1.7, {}, {}); }),
+            "the pair law 3 of 3 is zero everywhere inside its cutoff");
 }
 
 // --- A laminate --------------------------------------------------------------------------------------------

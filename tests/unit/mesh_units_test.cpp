@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "model/base/guarded_reader.h"
+#include "tests/support/refused_with.h"
 #include "tests/unit/mesh_files.h"
 
 namespace cuboct {
@@ -234,14 +235,10 @@ TEST_F(MeshUnits, ReadersThatEndBadlyAreTold) {
   const auto outcome_of = [&](const std::string& script) -> std::string {
     const std::string program = write("reader", "#!/bin/sh\n" + script + "\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
-    try {
-      read_guarded(program, "file", path("result"), {.seconds = 7, .megabytes = 50});
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "read";
+    return refused_with(
+        [&] { read_guarded(program, "file", path("result"), {.seconds = 7, .megabytes = 50}); });
   };
-  EXPECT_EQ(outcome_of("[ \"$*\" = \"file " + path("result") + " 7 50\" ]"), "read");
+  EXPECT_EQ(outcome_of("[ \"$*\" = \"file " + path("result") + " 7 50\" ]"), "accepted");
   EXPECT_EQ(outcome_of("echo out; echo 'line 3: no' >&2; echo more >&2; exit 2"), "line 3: no");
   EXPECT_EQ(outcome_of("printf 'a\\033[1mb\\n' >&2; exit 2"), "a\\x1b[1mb");
   EXPECT_EQ(outcome_of("kill -SEGV $$"), "it crashes the library that reads it (Segmentation fault)");

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "hw/engine/engine_kind.h"
+#include "hw/engine/scene_engine.h"
 #include "model/contract/law.h"
 #include "tests/fcc_block.h"
 
@@ -61,7 +62,7 @@ TEST(Meter, IsThatOfTheFixedRule) {
     request.probes = {20};
     request.energies = true;
     const std::vector<Curve> a = record(scene, golden_kind(scene, plan), request).trace.curves,
-                             b = record(scene, reference_kind(scene, plan, {}), request).trace.curves;
+                             b = record(scene, scene_reference_kind(scene, plan, {}), request).trace.curves;
     ASSERT_EQ(a.size(), b.size()) << name;
     for (size_t k = 0; k < a.size(); ++k) {
       EXPECT_EQ(a[k].name, b[k].name);

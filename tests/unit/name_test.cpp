@@ -5,6 +5,7 @@
 #include "hw/arch/arch.h"
 #include "model/base/error.h"
 #include "model/scene/scene.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -21,12 +22,7 @@ std::string with_names(const std::string& material, const std::string& constrain
 }
 
 std::string error_of(const std::string& material, const std::string& constraint, const std::string& probe) {
-  try {
-    parse_scene(with_names(material, constraint, probe), "a.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refused_with([&] { parse_scene(with_names(material, constraint, probe), "a.toml"); });
 }
 
 TEST(Name, OrdinaryOnesAreTaken) {

@@ -8,6 +8,7 @@
 
 #include "model/base/error.h"
 #include "tests/fcc_block.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -86,23 +87,14 @@ TEST(CellList, TakesParticlesThatAreFarApart) {
 TEST(CellList, RefusesABoxBelowTwoCutoffs) {
   Periodic box;
   box.extent = Vec3(0, 1.99, 4);
-  try {
-    CellList cells(1, box);
-    FAIL() << "took it";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "the periodic box is 1.99 m long along y, less than two cutoffs (2 m)");
-  }
+  EXPECT_EQ(refused_with([&] { CellList cells(1, box); }),
+            "the periodic box is 1.99 m long along y, less than two cutoffs (2 m)");
 }
 
 TEST(CellList, NamesAParticleWithoutAPosition) {
   CellList cells(1, {});
   const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, std::numeric_limits<double>::quiet_NaN(), 0)};
-  try {
-    cells.build(x);
-    FAIL() << "took it";
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "particle 1 has no finite position");
-  }
+  EXPECT_EQ(refused_with<std::runtime_error>([&] { cells.build(x); }), "particle 1 has no finite position");
 }
 
 }  // namespace

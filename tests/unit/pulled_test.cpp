@@ -13,6 +13,7 @@
 #include "model/base/steps.h"
 #include "model/run/reference_engine.h"
 #include "model/run/static_engine.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -177,13 +178,10 @@ TEST(Pulled, ErrorsAreAtTheirKeys) {
   const std::string region = beyond(3.3, "-x");
   const auto message = [&](const std::string& what, const std::string& more = "",
                            const std::string& stage = "") {
-    try {
+    return refused_with([&] {
       parse_scene(bar(1, "steps = 1\n") + pulled("third", what, region) + more, "bar.toml",
                   {.begins = true, .stage = stage});
-    } catch (const InputError& error) {
-      return std::string(error.what());
-    }
-    return std::string("no error");
+    });
   };
   const auto expect = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;

@@ -8,6 +8,7 @@
 
 #include "model/base/fixed_math.h"
 #include "tests/support/block.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -159,40 +160,33 @@ TEST(Quantise, PairTermIsOddAndMatchesTheRule) {
 }
 
 TEST(Quantise, RefusesWithNumbers) {
-  const auto text = [](auto&& call) -> std::string {
-    try {
-      call();
-    } catch (const InputError& e) {
-      return e.what();
-    }
-    return "accepted";
-  };
   Rule rule = bond_rule();
-  EXPECT_EQ(text([&] { quantise(rule, 1.5, {}, {}); }),
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1.5, {}, {}); }),
             "the cutoff, 1.6 m, is longer than a cell edge, 1.5 m");
-  EXPECT_EQ(text([&] { quantise(rule, 1e6, {}, {}); }),
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1e6, {}, {}); }),
             "a cutoff of 1.6 m is less than a unit of a difference in cells of 1e+06 m\n"
             "  hint: a smaller cell_edge, or more bits of difference_frac");
-  EXPECT_EQ(text([&] { quantise(rule, 1.6, {.velocity_bits = 40}, {}); }),
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1.6, {.velocity_bits = 40}, {}); }),
             "velocity_bits = 40 is out of range: 8 to 29");
-  EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {.degree = 3}); }),
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1.6, {}, {.degree = 3}); }),
             "table degree = 3 is out of range: 1 to 2");
-  EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {.shape = TableChoice::Shape::octaves, .index_bits = 2}); }),
-            "2 index bits are too few for the octaves between the law's core and its cutoff\n"
-            "  hint: index_bits = 3, or shape = \"uniform\", in the arch file's [table]");
+  EXPECT_EQ(
+      refused_with([&] { quantise(rule, 1.6, {}, {.shape = TableChoice::Shape::octaves, .index_bits = 2}); }),
+      "2 index bits are too few for the octaves between the law's core and its cutoff\n"
+      "  hint: index_bits = 3, or shape = \"uniform\", in the arch file's [table]");
   rule.types[0].velocity = Vec3(12, 0, 0);
-  EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {}); }),
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1.6, {}, {}); }),
             "an imposed velocity is 1.125 in units of the lattice: 29 bits with 28 fractional bits hold less "
             "than 1\n"
             "  hint: a dt of at most 0.133 s holds it");
   rule.types[0].velocity = Vec3::Zero();
   rule.types[0].gravity = Vec3(0, 0, 1e-6);
-  EXPECT_EQ(text([&] { quantise(rule, 1.6, {}, {}); }),
+  EXPECT_EQ(refused_with([&] { quantise(rule, 1.6, {}, {}); }),
             "gravity is 1.40625e-08 in units of the lattice: 28 fractional bits round it to 1.49012e-08\n"
             "  hint: guard = 12 in the arch file keeps it");
   rule.types[0].gravity = Vec3::Zero();
   rule.dt = 3000;
-  EXPECT_NE(text([&] { quantise(rule, 1.6, {}, {}); }).find("a dt of at most "), std::string::npos);
+  EXPECT_NE(refused_with([&] { quantise(rule, 1.6, {}, {}); }).find("a dt of at most "), std::string::npos);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "model/base/error.h"
 #include "model/body/geometry.h"
 #include "model/body/packing.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -152,12 +153,8 @@ TEST(Raster, AFileHoldsElevenBits) {
     EXPECT_LE(std::abs(again.frames[1].broken[k] - rasters.frames[1].broken[k]), 3 * 0x1p-11);
   }
   EXPECT_TRUE(rounded);
-  try {
-    read_rasters(CUBOCT_SOURCE_DIR "/LICENSE");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), CUBOCT_SOURCE_DIR "/LICENSE is not an HDF5 file");
-  }
+  EXPECT_EQ(refused_with([&] { read_rasters(CUBOCT_SOURCE_DIR "/LICENSE"); }),
+            CUBOCT_SOURCE_DIR "/LICENSE is not an HDF5 file");
   fs::remove_all(directory);
 }
 

@@ -9,7 +9,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "model/base/output.h"
 #include "tests/support/block.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -34,11 +36,6 @@ TEST(RtlEmit, ClearsItsOwnFilesAlone) {
   fs::remove_all(root);
 }
 
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // One who reads a library's file reads what every project holds, whatever the project is made for.
 TEST(RtlEmit, CopiesTheLibraryByteForByte) {
   Arch bricks;
@@ -59,7 +56,7 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
         for (const fs::path& folder : {library / "lib", library / "lattice", library / "board",
                                        library / "bus", library / "board" / board.name})
           if (!name.empty() && fs::is_regular_file(folder / name)) {
-            EXPECT_EQ(text_of(entry.path()), text_of(folder / name)) << name;
+            EXPECT_EQ(read_text(entry.path()), read_text(folder / name)) << name;
             ++copies;
           }
       }
@@ -70,7 +67,7 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
       const bool brick = arch.brick[0] > 1, settable = host && board.velocities;
       EXPECT_EQ(fs::exists(root / "rtl/cuboct_brick_core.sv"), brick);
       EXPECT_EQ(fs::exists(root / "rtl/cuboct_node_core.sv"), !brick);
-      EXPECT_EQ(text_of(root / "rtl/cuboct_node.sv").find(".MovedTypes(0)") == std::string::npos, settable);
+      EXPECT_EQ(read_text(root / "rtl/cuboct_node.sv").find(".MovedTypes(0)") == std::string::npos, settable);
       fs::remove_all(root);
     }
 }
@@ -90,7 +87,7 @@ TEST(RtlEmit, PrefixesEveryName) {
       if (!entry.is_regular_file() || entry.path().filename() == ".cuboct-emit") continue;
       ++files;
       const fs::path path = fs::relative(entry.path(), root / "left");
-      const std::string name = path.filename(), text = text_of(entry.path());
+      const std::string name = path.filename(), text = read_text(entry.path());
       const bool memory = path.extension() == ".hex";
       const std::string plain =
           memory ? name.substr(std::string("left_").size()) : without_prefix(name, "left_");
@@ -100,7 +97,7 @@ TEST(RtlEmit, PrefixesEveryName) {
       std::string same = without_prefix(text, "left_");
       if (name == "left_cuboct_bench.sv")
         for (size_t at; (at = same.find("\"left_")) != std::string::npos;) same.erase(at + 1, 5);
-      EXPECT_EQ(same, text_of(root / "plain" / path.parent_path() / plain)) << path;
+      EXPECT_EQ(same, read_text(root / "plain" / path.parent_path() / plain)) << path;
       // No name is left without; "cuboct_" in a longer word is part of a name with the prefix.
       if (name == "arch.toml") continue;
       for (size_t at = text.find("cuboct_"); at != std::string::npos; at = text.find("cuboct_", at + 1))
@@ -127,12 +124,10 @@ TEST(RtlTemplate, LeavesNoPlaceUnfilled) {
   EXPECT_EQ(fill("@A@ always_ff @(posedge clk_i) a@b @B_C@@A@", {{"A", "1"}, {"B_C", "@A@"}, {"D", "4"}}),
             "1 always_ff @(posedge clk_i) a@b @A@1");
   EXPECT_EQ(fill("", {}), "");
-  try {
-    fill("x @NODES@", {{"NODE", "1"}});
-    FAIL();
-  } catch (const std::logic_error& error) {
-    EXPECT_STREQ(error.what(), "nothing fills @NODES@");
-  }
+  EXPECT_EQ(refused_with<std::logic_error>([&] {
+              fill("x @NODES@", {{"NODE", "1"}});
+            }),
+            "nothing fills @NODES@");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "model/base/error.h"
 #include "model/real/reference.h"
 #include "model/scene/scene.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -150,22 +151,20 @@ TEST(Symmetry, WavesAreThoseOfTheWhole) {
 }
 
 TEST(Symmetry, IsRefusedWhereThereIsNone) {
-  const auto told = [](const auto& make) -> std::string {
-    try {
-      make();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
   const auto has = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   };
   const std::string x = "[[symmetry]]\nnormal = \"x\"\n";
-  has(told([&] { bar({-8.6, 0, 0}, x); }), "both sides of this plane");
-  has(told([&] { bar({0, 0, 0}, x + "point = \"[-0.2, 0, 0] mm\"\n"); }), "no particle stands in this plane");
-  has(told([&] { bar({0, 0, 0}, x + "point = \"[8.485281374, 0, 0] mm\"\n"); }), "moves particles out");
-  has(told([&] {
+  has(refused_with([&] { bar({-8.6, 0, 0}, x); }), "both sides of this plane");
+  has(refused_with([&] {
+        bar({0, 0, 0}, x + "point = \"[-0.2, 0, 0] mm\"\n");
+      }),
+      "no particle stands in this plane");
+  has(refused_with([&] {
+        bar({0, 0, 0}, x + "point = \"[8.485281374, 0, 0] mm\"\n");
+      }),
+      "moves particles out");
+  has(refused_with([&] {
         parse_scene(R"(gravity = "[0, 0, -9.81] m/s^2"
 mass = "1 g"
 packing = { pitch = "1 mm" }
@@ -178,19 +177,22 @@ normal = "z"
                     "fallen.toml");
       }),
       "fallen.toml:7:1: gravity along z is not its own mirror image");
-  has(told([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = [1, 1, 0]\n"); }), "must be an axis of the scene");
-  has(told([&] { bar({0, 0, 0}, x + x); }), "there twice");
-  has(told([&] {
+  has(refused_with([&] {
+        bar({0, 0, 0}, "[[symmetry]]\nnormal = [1, 1, 0]\n");
+      }),
+      "must be an axis of the scene");
+  has(refused_with([&] { bar({0, 0, 0}, x + x); }), "there twice");
+  has(refused_with([&] {
         bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n[box]\nperiodic = \"y\"\ncells = [6, 3, 2]\n");
       }),
       "the box repeats along y");
-  has(told([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "moved_by_force"); }), "by force");
-  has(told([&] {
+  has(refused_with([&] { bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "moved_by_force"); }), "by force");
+  has(refused_with([&] {
         bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "pulled", "force = \"[1, 1, 0] N\"");
       }),
       "pulls particles out");
   // {111} planes are no mirrors of the packing.
-  has(told([&] {
+  has(refused_with([&] {
         parse_scene(R"(mass = "1 g"
 packing = { pitch = "1 mm", axes = [[1, 1, 1], [1, -1, 0]] }
 geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }
@@ -203,7 +205,7 @@ normal = "x"
       }),
       "not its own mirror image along x");
   // {110} planes are, but a bond crosses them.
-  has(told([&] {
+  has(refused_with([&] {
         parse_scene(R"(mass = "1 g"
 packing = { pitch = "1 mm", axes = [[1, 1, 0], [-1, 1, 0]] }
 geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }

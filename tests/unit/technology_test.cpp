@@ -9,6 +9,7 @@
 
 #include "model/base/error.h"
 #include "model/config/config.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -16,12 +17,7 @@ namespace {
 const std::string kTechnologies = CUBOCT_SOURCE_DIR "/technologies";
 
 std::string error_of(const std::string& text) {
-  try {
-    parse_technology(text, "t.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return refused_with([&] { parse_technology(text, "t.toml"); });
 }
 
 // A file of one constant, with these lines.

@@ -8,7 +8,9 @@
 #include <string>
 
 #include "hw/engine/engine_kind.h"
+#include "hw/engine/scene_engine.h"
 #include "model/base/error.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -41,7 +43,7 @@ Measured at_start(const Scene& scene, const EngineKind& kind) {
 }
 Measured in_doubles(const Scene& scene) {
   const Plan plan = plan_of(scene, Arch());
-  return at_start(scene, reference_kind(scene, plan, {}));
+  return at_start(scene, scene_reference_kind(scene, plan, {}));
 }
 Measured in_integers(const Scene& scene) {
   const Plan plan = plan_of(scene, Arch());
@@ -176,13 +178,8 @@ TEST(Temperature, NeedsTwoFreeParticles) {
       "[[probe]]\nname = \"a\"\nkind = \"temperature\"\n"
       "region = { shape = \"sphere\", radius = 1 }\n";
   const std::string two = particle("[0, 0, 0]", "[3, 0, 0]") + particle("[10, 0, 0]", "[1, 0, 0]");
-  try {
-    parse_scene(scene_of(two) + one, "a.toml");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              "a.toml:22:10: a temperature needs two particles that no constraint holds or moves");
-  }
+  EXPECT_EQ(refused_with([&] { parse_scene(scene_of(two) + one, "a.toml"); }),
+            "a.toml:22:10: a temperature needs two particles that no constraint holds or moves");
 }
 
 // Of copper at 300 K, and the same by its energy and its speed: kT = 4.14e-21 J, sqrt(kT/m) = 198 m/s.

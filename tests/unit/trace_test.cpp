@@ -11,13 +11,13 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 
 #include "model/base/output.h"
 #include "model/trace/hdf5_file.h"
 #include "model/trace/trace_file.h"
 #include "tests/support/file_limit.h"
+#include "tests/support/refused_with.h"
 #include "tests/unit/made_trace.h"
 
 namespace cuboct {
@@ -37,23 +37,6 @@ class TraceFile : public testing::Test {
 
   fs::path directory_;
 };
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-template <typename Action>
-std::string error_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 void expect_equal(const Trace& a, const Trace& b) {
   EXPECT_EQ(a.engine, b.engine);
@@ -188,7 +171,7 @@ TEST_F(TraceFile, RefusesAnotherVersion) {
   const uint32_t old = 1;
   ASSERT_GE(H5Awrite(version, H5T_NATIVE_UINT32, &old), 0);
   H5Aclose(version), H5Fclose(file);
-  EXPECT_EQ(error_of([&] { read_trace(path("t.h5")); }),
+  EXPECT_EQ(refused_with([&] { read_trace(path("t.h5")); }),
             path("t.h5") + " is a trace of version 1; this program reads version 2");
 }
 
@@ -215,7 +198,7 @@ TEST_F(TraceFile, RefusesAStepCountThatItsHashesContradict) {
   const uint64_t wrong = 3;
   ASSERT_GE(H5Awrite(steps, H5T_NATIVE_UINT64, &wrong), 0);
   H5Aclose(steps), H5Fclose(file);
-  EXPECT_EQ(error_of([&] { read_trace(path("t.h5")); }),
+  EXPECT_EQ(refused_with([&] { read_trace(path("t.h5")); }),
             path("t.h5") + " is not a cuboct trace: steps and state hashes disagree in length");
 }
 
@@ -223,7 +206,7 @@ TEST_F(TraceFile, SameTraceSameBytes) {
   write_trace(path("a.h5"), made_trace());
   sleep(1);  // a time of the clock inside the file would show
   write_trace(path("b.h5"), made_trace());
-  EXPECT_EQ(bytes_of(path("a.h5")), bytes_of(path("b.h5")));
+  EXPECT_EQ(read_text(path("a.h5")), read_text(path("b.h5")));
 }
 
 // Frame by frame, or at once: the same bytes. A reader gets one after another.
@@ -241,7 +224,7 @@ TEST_F(TraceFile, ComesFrameByFrame) {
     out.finish(trace);
   }
   write_trace(path("whole.h5"), trace);
-  EXPECT_EQ(bytes_of(path("t.h5")), bytes_of(path("whole.h5")));
+  EXPECT_EQ(read_text(path("t.h5")), read_text(path("whole.h5")));
   EXPECT_FALSE(fs::exists(path("part.h5")));
   size_t frames = 0, bodies = 0;
   const TraceReader in(path("t.h5"));
@@ -346,9 +329,9 @@ TEST_F(TraceFile, OpensInH5py) {
 TEST_F(TraceFile, NamesPathAndReasonWhereItCannotWrite) {
   const std::string nowhere = path("none/t.h5");
   const std::string expected = "cannot write " + nowhere + ": No such file or directory";
-  EXPECT_EQ(error_of([&] { check_writable(nowhere); }), expected);
-  EXPECT_EQ(error_of([&] { write_trace(nowhere, made_trace()); }), expected);
-  EXPECT_EQ(error_of([&] { check_writable(path("")); }), "cannot write " + path("") + ": Is a directory");
+  EXPECT_EQ(refused_with([&] { check_writable(nowhere); }), expected);
+  EXPECT_EQ(refused_with([&] { write_trace(nowhere, made_trace()); }), expected);
+  EXPECT_EQ(refused_with([&] { check_writable(path("")); }), "cannot write " + path("") + ": Is a directory");
   check_writable(path("t.h5"));
   EXPECT_FALSE(fs::exists(path("t.h5")));
   EXPECT_TRUE(fs::is_empty(directory_));
@@ -356,36 +339,36 @@ TEST_F(TraceFile, NamesPathAndReasonWhereItCannotWrite) {
 
 TEST_F(TraceFile, NamesADirectoryThatCannotBeMade) {
   std::ofstream(path("file")) << "x";
-  EXPECT_EQ(error_of([&] { make_directory(path("file")); }),
+  EXPECT_EQ(refused_with([&] { make_directory(path("file")); }),
             "cannot make the directory " + path("file") + ": Not a directory");
-  EXPECT_EQ(error_of([&] { make_directory(path("file/below")); }),
+  EXPECT_EQ(refused_with([&] { make_directory(path("file/below")); }),
             "cannot make the directory " + path("file/below") + ": Not a directory");
 }
 
 TEST_F(TraceFile, KeepsTheOldFileWhereWritingFails) {
   std::ofstream(path("t.txt")) << "old";
-  EXPECT_EQ(error_of([&] {
+  EXPECT_EQ(refused_with([&] {
               write_whole(path("t.txt"), [](const std::string& temporary) {
                 std::ofstream(temporary) << "half";
                 throw InputError("broken");
               });
             }),
             "broken");
-  EXPECT_EQ(bytes_of(path("t.txt")), "old");
+  EXPECT_EQ(read_text(path("t.txt")), "old");
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1);
 }
 
 TEST_F(TraceFile, SaysWhatIsWrongWithAFileThatIsNoTrace) {
-  EXPECT_EQ(error_of([&] { read_trace(path("none.h5")); }),
+  EXPECT_EQ(refused_with([&] { read_trace(path("none.h5")); }),
             "cannot read " + path("none.h5") + ": No such file or directory");
   std::ofstream(path("text.h5")) << "not HDF5";
-  EXPECT_EQ(error_of([&] { read_trace(path("text.h5")); }), path("text.h5") + " is not an HDF5 file");
+  EXPECT_EQ(refused_with([&] { read_trace(path("text.h5")); }), path("text.h5") + " is not an HDF5 file");
 }
 
 TEST_F(TraceFile, RefusesACurveNameThatHdf5WouldSplit) {
   Trace trace = made_trace();
   trace.curves[0].name = "a/b";
-  EXPECT_EQ(error_of([&] { write_trace(path("t.h5"), trace); }),
+  EXPECT_EQ(refused_with([&] { write_trace(path("t.h5"), trace); }),
             "a curve cannot be called 'a/b' in a trace: a name needs characters, none of them '/'");
   EXPECT_TRUE(fs::is_empty(directory_));
 }

@@ -5,11 +5,11 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "emu/systemc/node.h"
 #include "emu/verilated/verilated_node.h"
+#include "model/base/output.h"
 #include "tests/verify/small_case.h"
 
 namespace cuboct::test {
@@ -37,13 +37,6 @@ void cuboct_write_coverage(VerilatedContext& context) {
   context.coveragep()->write((std::string(dir) + "/" + name + ".dat").c_str());
 }
 )";
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 void replace_once(std::string& text, const std::string& from, const std::string& to) {
   const size_t at = text.find(from);

@@ -8,10 +8,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "model/base/json.h"
+#include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/text.h"
 #include "study/report/chart.h"
@@ -233,13 +232,6 @@ TEST(Json, TextThatCannotEndItsElement) {
   EXPECT_EQ(json(std::vector<double>{1e-300, NAN, -INFINITY}), "[1e-300,null,null]");
 }
 
-std::string bytes(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 TEST(Page, SameResultsSameBytes) {
   const std::string page = study::page_of(made_up_results());
   EXPECT_EQ(page, study::page_of(made_up_results()));
@@ -338,11 +330,11 @@ TEST(Charts, PicturesOfEachChartTwiceTheSame) {
                                       "trajectory_by_dt.svg"}));
   EXPECT_EQ(study::write_charts(results, scratch.path("b")), names);
   for (const std::string& name : names) {
-    const std::string picture = bytes(scratch.path("a/" + name));
-    EXPECT_EQ(picture, bytes(scratch.path("b/" + name))) << name;
+    const std::string picture = read_text(scratch.path("a/" + name));
+    EXPECT_EQ(picture, read_text(scratch.path("b/" + name))) << name;
     EXPECT_EQ(picture.substr(0, 5), name.ends_with(".png") ? "\x89PNG\r" : "<?xml");
   }
-  const std::string svg = bytes(scratch.path("a/trajectory_by_dt.svg"));
+  const std::string svg = read_text(scratch.path("a/trajectory_by_dt.svg"));
   EXPECT_NE(svg.find("it's new, fixed"), std::string::npos);
   EXPECT_NE(svg.find("dt²"), std::string::npos);
 }
@@ -365,7 +357,7 @@ TEST(Charts, HostileTextIsDrawn) {
   for (const std::string& name : names) {
     EXPECT_EQ(name.find('/'), std::string::npos) << name;
     hostile_keys += name.find("regions") != std::string::npos;
-    const std::string picture = bytes(scratch.path(directory + "/" + name));
+    const std::string picture = read_text(scratch.path(directory + "/" + name));
     EXPECT_GT(picture.size(), 1000U) << name;
     if (!name.ends_with(".svg")) continue;
     EXPECT_EQ(picture.find("<script"), std::string::npos) << name;
@@ -385,7 +377,7 @@ TEST(Charts, LongNamesStandBelow) {
     for (const double dt : {0.01, 0.04}) add(results, {}, {}, dt, dt * dt).speed.machine = machine;
     const Scratch scratch;
     study::write_charts(results, scratch.path("charts"));
-    const std::string svg = bytes(scratch.path("charts/trajectory_simulated_seconds.svg"));
+    const std::string svg = read_text(scratch.path("charts/trajectory_simulated_seconds.svg"));
     const size_t name = svg.find(">simulated seconds per second<"), at = svg.rfind("translate(", name);
     return name == std::string::npos ? 0.0 : std::stod(svg.substr(at + 10));
   };

@@ -11,9 +11,9 @@
 #include "hw/program/error_file.h"
 #include "hw/program/options.h"
 #include "model/base/interrupt.h"
+#include "model/base/progress.h"
 #include "model/base/resources.h"
 #include "model/run/element_run.h"
-#include "model/run/set_status.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -71,9 +71,9 @@ int run(const StudyRequest& request) {
         return std::make_unique<Timed>(on(m, samples), &relaxing);
       };
   how.progress = request.progress;
-  SetStatus status(request.before);
+  StatusLine status;
   how.see = [&](size_t set, double part) {
-    status.say(set, study.sets, part);
+    status.say(request.before + set_status(set, study.sets, part));
     return !interrupted();
   };
   const std::vector<SetOutcome> sets = run_elements(study, material, how);
