@@ -52,7 +52,7 @@ uint64_t key_of(const Build& build, const fs::path& dir, const std::string& tool
 
 // Two units, as most of the compiler's time would go into Verilator's headers: what runs in each cycle, with
 // the sources; and what runs once, as the settling of a new model and the filling of its tables, where the
-// compiler is not to spend time.
+// compiler is not to spend time. One where it spends none on either.
 struct Units {
   std::string each_cycle, once;
 };
@@ -63,12 +63,30 @@ Units units_of(const Build& build, const fs::path& model) {
   for (const auto& entry : fs::directory_iterator(model, none))
     if (entry.path().extension() == ".cpp") files.insert(entry.path().filename().string());
   Units units;
+  const bool one = build.compiler_flags.find("-O0") != std::string::npos;
   for (const std::string& name : files)
-    (name.ends_with("Slow.cpp") ? units.once : units.each_cycle) += fmt::format("#include \"{}\"\n", name);
+    (name.ends_with("Slow.cpp") && !one ? units.once : units.each_cycle) +=
+        fmt::format("#include \"{}\"\n", name);
   for (const auto& [name, text] : build.sources)
     if (name.ends_with(".cpp")) units.each_cycle += fmt::format("#include \"{}\"\n", name);
-  units.once += "#include \"verilated.cpp\"\n#include \"verilated_threads.cpp\"\n";
   return units;
+}
+
+constexpr const char* kIncludes = "-I\"$root/include\" -I\"$root/include/vltstd\"";
+constexpr const char* kRoot = "root=$(verilator --getenv VERILATOR_ROOT) || exit; ";
+
+// What all models of the same tools and flags have in common, as an object in `home`: made where there is
+// none.
+fs::path runtime(const Build& build, const std::string& tools, const fs::path& home, const fs::path& dir,
+                 const fs::path& log) {
+  const std::string flags = fmt::format("{} {} -O0", kCompilerFlags, build.compiler_flags);
+  const fs::path object = home / fmt::format("verilated-{:016x}.o", key_of_texts({flags, tools}));
+  if (fs::exists(object)) return object;
+  write_text(dir / "runtime.cpp", "#include \"verilated.cpp\"\n#include \"verilated_threads.cpp\"\n");
+  run_logged("the C++ compiler",
+             fmt::format("{}{} {} {} -c runtime.cpp", kRoot, host_compiler(), flags, kIncludes), dir, log);
+  fs::rename(dir / "runtime.o", object);
+  return object;
 }
 
 }  // namespace
@@ -104,14 +122,14 @@ std::string compile(const Build& build, const std::string& directory) {
   const Units units = units_of(build, dir / "model");
   write_text(dir / "each_cycle.cpp", units.each_cycle);
   write_text(dir / "once.cpp", units.once);
-  const std::string compiled =
-      fmt::format("{} {}{} -I. -Imodel -I\"$root/include\" -I\"$root/include/vltstd\" {}", host_compiler(),
-                  kCompilerFlags, arguments, build.compiler_flags);
+  const fs::path shared = runtime(build, tools, home, dir, log);
+  const std::string compiled = fmt::format("{} {}{} -I. -Imodel {} {}", host_compiler(), kCompilerFlags,
+                                           arguments, kIncludes, build.compiler_flags);
   run_logged("the C++ compiler",
-             fmt::format("root=$(verilator --getenv VERILATOR_ROOT) || exit; {0} -O0 -c once.cpp & once=$!; "
+             fmt::format("{3}{0} -O0 -c once.cpp & once=$!; "
                          "{0} -c each_cycle.cpp; each=$?; wait $once && test $each = 0 && "
-                         "{1} -shared -pthread -o library.so each_cycle.o once.o {2}",
-                         compiled, host_compiler(), build.libraries),
+                         "{1} -shared -pthread -o library.so each_cycle.o once.o {4} {2}",
+                         compiled, host_compiler(), build.libraries, kRoot, shell_word(shared.string())),
              dir, log);
   fs::rename(dir / "library.so", result);
   fs::remove(log, error);

@@ -60,10 +60,10 @@ std::string default_build_directory() {
                    "give one with --build-dir");
 }
 
-Build node_build(const Plan& plan) {
+Build node_build(const Plan& plan, const std::string& optimise) {
   return {.top = "cuboct_node",
           .verilator_flags = "--cc",
-          .compiler_flags = "-O2 -fno-semantic-interposition",
+          .compiler_flags = optimise + " -fno-semantic-interposition",
           .constants = {{"FACES", 2 * plan.rule.axes},
                         {"LINK_BITS", plan.link.wire_bits},
                         {"ACK_BITS", plan.link.ack_bits},
@@ -74,15 +74,16 @@ Build node_build(const Plan& plan) {
           .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};
 }
 
-std::string compile_node(const Plan& plan, const std::string& build_directory) {
-  return compile(node_build(plan), build_directory);
+std::string compile_node(const Plan& plan, const std::string& build_directory, const std::string& optimise) {
+  return compile(node_build(plan, optimise), build_directory);
 }
 
 // All ports of more than one bit become sc_bv.
-std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory) {
+std::string compile_lattice(const Plan& plan, const State& initial, const std::string& build_directory,
+                            const std::string& optimise) {
   return compile({.top = "cuboct_lattice",
                   .verilator_flags = "--sc --pins-bv 2 -GProbe=1",
-                  .compiler_flags = "-O1",
+                  .compiler_flags = optimise,
                   .libraries = "-lsystemc",
                   .constants = {{"NODES", static_cast<int>(plan.nodes())},
                                 {"PARTICLE_BITS", plan.words.particle_bits},

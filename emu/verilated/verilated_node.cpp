@@ -114,9 +114,10 @@ std::string VerilatedNode::doing() const {
   return text;
 }
 
-NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed) {
+NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed,
+                            const std::string& optimise) {
   check_words(plan);
-  auto library = std::make_shared<const Library>(compile_node(plan, build_directory));
+  auto library = std::make_shared<const Library>(compile_node(plan, build_directory, optimise));
   return [library, &plan, seed](uint32_t node, uint8_t has_link) {
     return std::make_unique<VerilatedNode>(library, plan, node, has_link, seed == 0 ? 0 : seed + node);
   };

@@ -45,7 +45,9 @@ class VerilatedNode : public NodeModel {
 // The outputs that belong to the cycle, without the link registers.
 void read_outputs(const CuboctOut& from, NodeOutputs& out);
 
-// Compiles (or finds) the plan's node; keeps a reference to `plan`. Throws InputError.
-NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed = 0);
+// Compiles (or finds) the plan's node (`optimise`: see library.h); keeps a reference to `plan`. Throws
+// InputError.
+NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed = 0,
+                            const std::string& optimise = "-O2");
 
 }  // namespace cuboct::emu

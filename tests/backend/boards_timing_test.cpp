@@ -16,18 +16,19 @@ namespace {
 // Random plans, rebuilt as random machines of all kinds, on random boards.
 TEST(BoardsTiming, EqualsTheClockedNode) {
   Seen seen;
-  for (uint64_t seed = 1; seed <= 24; ++seed) {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
     ASSERT_EQ(difference(on_boards(random_case(seed), seed), seen), "");
     ASSERT_EQ(difference(on_boards(rebuilt(random_case(seed), seed), seed + 1000), seen), "");
   }
-  for (uint64_t seed = 1; seed <= 8; ++seed) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
     ASSERT_EQ(difference(on_boards(rebuilt(random_flat_case(seed), seed), seed), seen), "");
     ASSERT_EQ(difference(on_boards(random_brick_case(seed), seed), seen), "");
     ASSERT_EQ(difference(on_boards(with_halos_on_arrival(random_case(seed)), seed + 10), seen), "");
   }
   // Hot ones, from which particles leave along two axes and several leave one cell.
   for (const char* name : {"hot_gas", "flat_gas"}) {
-    const Case hot = make_case(name);
+    Case hot = make_case(name);
+    hot.steps = 10;
     for (const Case& c : {hot, with_halos_on_arrival(hot), with_brick(hot, {2, 2, 1})})
       ASSERT_EQ(difference(on_boards(c, 5), seen), "");
   }

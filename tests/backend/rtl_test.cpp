@@ -20,6 +20,12 @@ namespace cuboct::test {
 namespace {
 
 constexpr const char* kCache = CUBOCT_TEST_CACHE;
+// Of the C++ compiler: a model of few cycles takes longer to compile than to run.
+constexpr const char* kOptimise = "-O0";
+
+emu::NodeFactory verilated_nodes(const Plan& plan, uint32_t seed = 0) {
+  return emu::verilated_nodes(plan, kCache, seed, kOptimise);
+}
 
 // Cases that between them need few compiled nodes: the first four share one.
 std::vector<std::string> rtl_cases() {
@@ -43,8 +49,8 @@ double counter_of(const emu::RunResult& run, const std::string& name) {
 // registers start as random bits in one of them: nothing may hang on what reset leaves alone.
 void expect_golden(const Case& c) {
   const Plan& plan = c.setup.plan;
-  const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache),
-                         random = emu::verilated_nodes(plan, kCache, 17);
+  const emu::NodeFactory native = emu::native_nodes(plan), verilated = verilated_nodes(plan),
+                         random = verilated_nodes(plan, 17);
   const auto free = keep_all(c.steps), stalled = keep_all(c.steps, 0.3, 7);
   auto threaded = free;
   threaded.threads = 3;
@@ -107,8 +113,7 @@ void expect_as_in_golden(const Case& c, Fault fault) {
   const GoldenRun golden = run_golden(c.setup, c.steps);
   for (const double rate : {0.0, 0.4}) {
     const auto options = keep_all(c.steps, rate);
-    const auto rtl =
-        run_loop_bench(plan, c.setup.initial, options, emu::verilated_nodes(plan, kCache), "rtl");
+    const auto rtl = run_loop_bench(plan, c.setup.initial, options, verilated_nodes(plan), "rtl");
     const auto native = run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain");
     EXPECT_EQ(compare(plan, golden, rtl).difference, "");
     ASSERT_TRUE(rtl.trace.stop);
@@ -152,8 +157,8 @@ TEST(RtlMutation, AnotherTableIsSeen) {
   const Case c = make_case("undamped_2x2x2");
   Case other = c;
   for (int32_t& word : other.setup.plan.rule.force.c0) word += 1;
-  const auto run = run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps),
-                                  emu::verilated_nodes(c.setup.plan, kCache), "rtl");
+  const auto run =
+      run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps), verilated_nodes(c.setup.plan), "rtl");
   EXPECT_EQ(compare(c.setup.plan, run_golden(c.setup, c.steps), run).difference, "");
   EXPECT_EQ(compare(c.setup.plan, run_golden(other.setup, c.steps), run).difference.substr(0, 17),
             "step 1: particle ");
@@ -184,7 +189,7 @@ class Flooded : public emu::NodeModel {
 };
 
 emu::NodeFactory one_flooded(const Plan& plan) {
-  return [inner = emu::verilated_nodes(plan, kCache)](uint32_t node, uint8_t has_link) {
+  return [inner = verilated_nodes(plan)](uint32_t node, uint8_t has_link) {
     std::unique_ptr<emu::NodeModel> model = inner(node, has_link);
     if (node == 1) model = std::make_unique<Flooded>(std::move(model));
     return model;
@@ -231,7 +236,7 @@ TEST(RtlAssertion, EndsTheProgramWithOne) {
 // The emitted lattice as one SystemC module: its wiring is the generator's, not the bench's.
 emu::RunResult run_lattice(const Case& c) {
   const Plan& plan = c.setup.plan;
-  const emu::Library library(emu::compile_lattice(plan, c.setup.initial, kCache));
+  const emu::Library library(emu::compile_lattice(plan, c.setup.initial, kCache, kOptimise));
   void* model = library.create(5);
   const auto particles = emu::by_node(plan, c.setup.initial);
   const uint32_t nodes = plan.nodes();
@@ -282,8 +287,7 @@ void expect_equal_to_wired_nodes(const Case& c) {
   const Compared with_golden = compare(plan, run_golden(c.setup, c.steps), whole);
   EXPECT_EQ(with_golden.difference, "");
   EXPECT_EQ(with_golden.steps, c.steps + 1);
-  const auto wired =
-      run_loop_bench(plan, c.setup.initial, keep_all(c.steps), emu::verilated_nodes(plan, kCache), "rtl");
+  const auto wired = run_loop_bench(plan, c.setup.initial, keep_all(c.steps), verilated_nodes(plan), "rtl");
   const Compared with_wired = compare_cycles(wired, whole);
   EXPECT_EQ(with_wired.difference, "");
   EXPECT_EQ(with_wired.spans, c.steps * plan.nodes() * kPhases);
@@ -296,8 +300,8 @@ TEST(RtlBrickLattice, EqualsTheWiredNodes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice,
-                         testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat", "flat_narrow"),
-                         [](const auto& p) { return p.param; });
+                         testing::Values("undamped_2x2x2", "lattice_3x2x1", "flat.snug", "flat_narrow"),
+                         [](const auto& p) { return p.param.substr(0, p.param.find('.')); });
 
 }  // namespace
 }  // namespace cuboct::test

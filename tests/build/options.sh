@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # Configures the tree with each part switched off, and with what each part needs missing: a part that is left out is
 # told, and its targets are gone; the others stay.
-# usage: options.sh ROOT
+# usage: options.sh ROOT [all]; all: with what users have set themselves, too
 set -euo pipefail
 root=$1
 work=$(mktemp -d)
@@ -69,6 +69,7 @@ else
 fi
 lacks _cuboct cuboct_fit cuboct_ranks cuboct_study cuboct-systemc cuboct-rtl unit_tests docs
 
+[ "${2-}" = all ] || { echo "two ways to configure"; exit; }
 configure "$work/bare" -DCUBOCT_SYSTEMC=OFF -DCMAKE_DISABLE_FIND_PACKAGE_pagmo=ON -DCMAKE_CXX_COMPILER_LAUNCHER=env -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=bfd -DCUBOCT_MKDOCS=/bin/true
 says "Compiler launcher, as given: env"
 says "Linker, as given: -fuse-ld=bfd"

@@ -14,6 +14,8 @@ trap 'rm -rf "$work"' EXIT
 ln -s "$root/scenes" "$work/scenes"
 cd "${IN:-$work}"
 PATH=$programs:$PATH
+# What Verilator makes runs for some cycles: its compiler is not to optimise.
+export MAKEFLAGS='OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0'
 
 # A page's sleep of seconds lets a program in the background begin: here until it catches SIGTERM, however busy the machine is.
 sleeps='sleep() {
@@ -22,7 +24,7 @@ sleeps='sleep() {
   while [ -d "/proc/${program:-none}" ] && ! (( 0x$(sed -n "s/^SigCgt:[[:space:]]*//p" "/proc/$program/status") >> 14 & 1 )); do
     command sleep 0.1
   done
-  command sleep "$1"
+  if [ "$program" = none ]; then command sleep "$1"; else command sleep 0.5; fi
 }'
 blocks=0 texts=0
 kind='' body=''

@@ -66,7 +66,7 @@ TEST_F(Log, ARowHoldsWhatTheCurvesHold) {
   };
   for (const auto& [engine, steps, rows, sampled, probed_alone] :
        {Case{"lattice", "2000", 21, 11, 10}, Case{"golden", "200", 21, 2, 3},
-        Case{"systemc", "130", 21, 2, 0}}) {
+        Case{"systemc", "30", 21, 2, 0}}) {
     const Answer answer = run({"--engine", engine, "--steps", steps, "--out", bench_.path(engine), "--json"});
     ASSERT_EQ(answer.code, 0) << answer.err;
     EXPECT_EQ(answer.out.front(), '{');

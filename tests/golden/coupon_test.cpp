@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "hw/plan/setup.h"
-#include "model/analysis/measure.h"
 #include "model/analysis/strain.h"
-#include "model/contract/golden.h"
 #include "model/solid/dynamical_matrix.h"
+#include "tests/golden/scene_with.h"
 
 namespace cuboct {
 namespace {
@@ -19,25 +17,19 @@ struct Pull {
   Body last;
 };
 
+// By the lattice engine, which has golden's bits.
 Pull pulled(const Scene& scene) {
-  const auto setup = make_setup(scene, {});
-  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
-  ProbeMeter meter(scene.probes, scene.periodic, scene.body.x);
-  for (uint64_t step = 0; step <= scene.steps; ++step) {
-    if (step % scene.probe_every == 0) {
-      const State state = golden.state();
-      const auto kicks = summed_kicks(setup.plan.rule, setup.plan.lattice, state);
-      meter.add(sample_of(setup.plan.rule, setup.plan.lattice, setup.plan.origin, state, kicks));
-    }
-    golden.step();
-  }
-  Pull pull;
-  pull.last = to_real(golden.state(), setup.plan.rule, setup.plan.lattice, setup.plan.origin);
-  for (const Curve& curve : meter.curves()) {
-    if (curve.name == "tension.strain") pull.strain = curve.value;
-    if (curve.name == "tension.stress") pull.stress = curve.value;
-  }
-  return pull;
+  const Plan plan = plan_of(scene, {});
+  emu::LatticeRun request;
+  request.steps = request.hash_every = scene.steps;
+  request.engine.threads = 1;
+  request.frames = {scene.steps};
+  for (uint64_t step = 0; step <= scene.steps; step += scene.probe_every) request.probes.push_back(step);
+  const Trace trace = emu::run_lattice(scene, plan, request).trace;
+  if (trace.stop) throw std::runtime_error(trace.stop->text);
+  return {test::curve_named(trace.curves, "tension.strain").value,
+          test::curve_named(trace.curves, "tension.stress").value,
+          to_real(trace.frames.back(), plan.rule, plan.lattice, plan.origin)};
 }
 
 double slope(const Pull& pull, double low, double high) {

@@ -27,7 +27,8 @@ class LinkRtl : public testing::TestWithParam<std::string> {};
 TEST_P(LinkRtl, EqualsGoldenInBitsAndTheNativeNodeInCycles) {
   const Case c = make_case(GetParam());
   const Plan& plan = c.setup.plan;
-  const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache, 17);
+  const emu::NodeFactory native = emu::native_nodes(plan),
+                         verilated = emu::verilated_nodes(plan, kCache, 17, "-O0");
   const auto free = keep_all(c.steps), stalled = keep_all(c.steps, 0.3, 7);
   emu::Bench nf("native_free", plan, c.setup.initial, free, native, "systemc");
   emu::Bench ns("native_stalled", plan, c.setup.initial, stalled, native, "systemc");
@@ -54,7 +55,8 @@ TEST_P(LinkRtl, MeetsFaultsAsTheNativeNodeDoes) {
     options.faults.rate = 0.02;
   else
     options.faults.count = 1;
-  const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache, 5);
+  const emu::NodeFactory native = emu::native_nodes(plan),
+                         verilated = emu::verilated_nodes(plan, kCache, 5, "-O0");
   emu::Bench systemc("native", plan, c.setup.initial, options, native, "systemc");
   emu::Bench rtl("rtl", plan, c.setup.initial, options, verilated, "rtl");
   emu::simulate({&systemc, &rtl});
@@ -80,7 +82,8 @@ TEST_P(LinkRtl, MeetsFaultsAsTheNativeNodeDoes) {
 TEST_P(LinkRtl, SpeaksTheNativeNodesCode) {
   const Case c = make_case(GetParam());
   const Plan& plan = c.setup.plan;
-  const emu::NodeFactory native = emu::native_nodes(plan), verilated = emu::verilated_nodes(plan, kCache);
+  const emu::NodeFactory native = emu::native_nodes(plan),
+                         verilated = emu::verilated_nodes(plan, kCache, 0, "-O0");
   const emu::NodeFactory mixed = [&](uint32_t node, uint8_t has_link) {
     const Cell& cell = plan.lattice.cell(node);
     return (cell[0] + cell[1] + cell[2]) % 2 != 0 ? verilated(node, has_link) : native(node, has_link);

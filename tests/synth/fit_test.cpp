@@ -72,24 +72,25 @@ Plan plan_of_scene(const std::string& scene, const std::function<void(Arch&)>& c
 }
 
 TEST(FitMemories, AreThoseOfTheRtl) {
+  const Plan arrival = plan_of_scene(
+      "undamped_block", [](Arch& a) { a.halos = Halos::arrival, a.streamers = 2, a.force_pipes = 4; });
+  EXPECT_EQ(text_of(counted(arrival)), text_of(elaborated(arrival)));
+  const Plan brick = plan_of_scene("sheet", [](Arch& a) {
+    a.brick = {3, 1, 1}, a.filter_lanes = 3, a.force_pipes = 2;
+  });
+  EXPECT_EQ(text_of(counted(brick)), text_of(elaborated(brick)));
+}
+
+// Of the full tier.
+TEST(FitMemories, OfOtherPlansAreThoseOfTheRtl) {
   const Plan flat = plan_of_scene("sheet", [](Arch& a) { a.filter_lanes = 3, a.force_pipes = 2; });
   EXPECT_EQ(text_of(counted(flat)), text_of(elaborated(flat)));
   const Plan held = plan_of_scene("two_types", [](Arch& a) { a.capacity = 11, a.queue_depth = 24; });
   EXPECT_EQ(text_of(counted(held)), text_of(elaborated(held)));
   const Plan plain = plan_of_scene("undamped_block", [](Arch& a) { a.link_bits = 40; });
   EXPECT_EQ(text_of(counted(plain)), text_of(elaborated(plain)));
-  const Plan arrival = plan_of_scene(
-      "undamped_block", [](Arch& a) { a.halos = Halos::arrival, a.streamers = 2, a.force_pipes = 4; });
-  EXPECT_EQ(text_of(counted(arrival)), text_of(elaborated(arrival)));
-}
-
-TEST(FitMemories, AreThoseOfBricks) {
   const Plan cube = plan_of_scene("two_types", [](Arch& a) { a.brick = {2, 2, 2}, a.capacity = 6; });
   EXPECT_EQ(text_of(counted(cube)), text_of(elaborated(cube)));
-  const Plan flat = plan_of_scene("sheet", [](Arch& a) {
-    a.brick = {3, 1, 1}, a.filter_lanes = 3, a.force_pipes = 2;
-  });
-  EXPECT_EQ(text_of(counted(flat)), text_of(elaborated(flat)));
 }
 
 TEST(FitMemories, InBlocksOfTheDevice) {
