@@ -23,9 +23,8 @@ std::string block(const Bench& bench, const std::string& more = "") {
 
 TEST(Stability, PrintsTheoryBesideWhatItMeasures) {
   const Bench bench(false);
-  const Answer answer =
-      bench.cuboct(
-          {"stability", block(bench, "[damping]\nratio = 0.3\n"), "--strain", "0", "--resolution", "0.01"});
+  const Answer answer = bench.cuboct(
+      {"stability", block(bench, "[damping]\nratio = 0.3\n"), "--strain", "0", "--resolution", "0.01"});
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_EQ(answer.err, "");
   // 2/sqrt(8 k/m)
