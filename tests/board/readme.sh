@@ -16,13 +16,14 @@ blocks() {
     inside {block = block $0 "\n"}' "$1/README.md"
 }
 
-emit() {  # BOARD ARCH
-  cuboct emit "$scene" --arch "$root/scenes/archs/$2.toml" --board "$1" --out "$1"
+emit() {  # BOARD ARCH ARGUMENT...
+  cuboct emit "$scene" --arch "$root/scenes/archs/$2.toml" --board "$1" --out "$1" "${@:3}"
   cmp "$1/arch.toml" "$root/scenes/archs/$2.toml"
 }
 
 if [ "$what" = run ]; then
-  emit icebreaker icebreaker
+  # The machine of docs/user/board.md, which is compiled once.
+  emit icebreaker icebreaker --baud 3000000 --unchecked
   blocks icebreaker cuboct-board-sim | sed "s|SCENE|$scene|" > commands
   [ "$(wc -l < commands)" = 4 ] || fail "other commands: $(cat commands)"
   (cd icebreaker && bash -euo pipefail ../commands > ../printed 2>&1) || fail "$(cat printed)"

@@ -16,6 +16,7 @@ cd "${IN:-$work}"
 PATH=$programs:$PATH
 # What Verilator makes runs for some cycles: its compiler is not to optimise.
 export MAKEFLAGS='OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0'
+if command -v ccache >/dev/null; then export OBJCACHE=ccache; fi
 
 # A page's sleep of seconds lets a program in the background begin: here until it catches SIGTERM, however busy the machine is.
 sleeps='sleep() {
