@@ -6,6 +6,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/study/budget.h"
 #include "cli/study/explore_machines.h"
 #include "hw/program/options.h"
@@ -123,7 +124,7 @@ int explore(const ExploreOptions& options) {
 
 void add_explore(Command& app, int& exit_code) {
   auto options = std::make_shared<ExploreOptions>();
-  Command command = app.command("explore", "chart a study's settings or machines: errors, speed, energy");
+  Command command = add_command(app, "explore");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command
       .option("--out", options->out, "directory for results; default: that of the study's name with .study")

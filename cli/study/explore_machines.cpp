@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "cli/machine/emit.h"
-#include "cli/machine/machine_devices.h"
 #include "cli/machine/technologies.h"
+#include "cli/study/machine_devices.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"

@@ -7,6 +7,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/study/bond_fit.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
@@ -189,9 +190,15 @@ int fit_study(const FitOptions& options) {
 
 }  // namespace
 
+#if !CUBOCT_HAS_BOND_FITS
+int fit_bonds(const std::string&, const std::string&, int, const Answer&) {
+  refuse_left_out("fit", kBondFits);
+}
+#endif
+
 void add_fit(Command& app, int& exit_code) {
   auto options = std::make_shared<FitOptions>();
-  Command command = app.command("fit", "find the force law of a curve, or the potential of a crystal");
+  Command command = add_command(app, "fit");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command.option("--out", options->out, "directory for results; default: that of the study's name with .fit")
       .type_name("DIR");

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "cli/answer.h"
+#include "cli/programs.h"
 #include "cli/study/learn_cracks.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
@@ -136,7 +137,7 @@ void run(const LearnOptions& options) {
 
 void add_learn(Command& app, int& exit_code) {
   auto options = std::make_shared<LearnOptions>();
-  Command command = app.command("learn", "learn a linear peridynamic solid from a sheet of atoms");
+  Command command = add_command(app, "learn");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command
       .option("--out", options->out, "directory for results; default: that of the study's name with .learn")

@@ -8,6 +8,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/machine/technologies.h"
+#include "cli/programs.h"
 #include "cli/study/multiscale_compare.h"
 #include "cli/study/multiscale_gpu.h"
 #include "cli/study/multiscale_node.h"
@@ -125,7 +126,7 @@ void multiscale(const MultiscaleOptions& options) {
 
 void add_multiscale(Command& app, int& exit_code) {
   auto options = std::make_shared<MultiscaleOptions>();
-  Command command = app.command("multiscale", "stretch or strike a body whose elements carry their atoms");
+  Command command = add_command(app, "multiscale");
   command.option("study", options->study, "study file (TOML)").required().type_name("STUDY");
   command
       .option("--out", options->out,
