@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/commit.h"
+#include "cli/programs.h"
 #include "emu/lattice/program.h"
 #include "hw/engine/engines.h"
 #include "model/base/process.h"
@@ -23,21 +24,10 @@ std::string shared(const std::string& program) {
   return "built in; ranks over MPI: " + program_text(program);
 }
 
-#ifdef CUBOCT_HAS_STUDIES
-constexpr const char* kStudies = "built in";
-#else
-constexpr const char* kStudies = "left out";
-#endif
-#ifdef CUBOCT_HAS_FITS
-constexpr const char* kFits = "built in";
-#else
-constexpr const char* kFits = "left out";
-#endif
-#ifdef CUBOCT_HAS_SYNTH
-constexpr const char* kSynthesis = "built in";
-#else
-constexpr const char* kSynthesis = "left out";
-#endif
+std::string part_text(const BuildPart& part, const std::string& program) {
+  if (!part.built) return "left out";
+  return beside(program).empty() ? program_text(program) : "built in";
+}
 
 }  // namespace
 
@@ -50,9 +40,9 @@ std::string version_text() {
     line(row.name, !row.program.empty() ? program_text(row.program)
                    : row.ranks.empty()  ? "built in"
                                         : shared(row.ranks));
-  line("studies", kStudies);
-  line("fits", kFits);
-  line("synthesis", kSynthesis);
+  line("studies", part_text(kStudies, "cuboct-study"));
+  line("fits", part_text(kFits, "cuboct-study"));
+  line("synthesis", part_text(kSynthesis, "cuboct-machine"));
   out.pop_back();  // CLI11 ends the line
   return out;
 }

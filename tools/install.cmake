@@ -1,7 +1,7 @@
 # `cmake --install build --strip --prefix DIR`: a directory for machines that have none of our packages. DIR/bin has
 # the programs that need no more than a shell, and those that read strangers' files for them; DIR/lib every shared library
 # they load but glibc's, which comes with each system and must be its own.
-set(installed cuboct cuboct-read-trace)
+set(installed cuboct cuboct-study cuboct-machine cuboct-bench cuboct-read-trace)
 foreach(program cuboct-gpu cuboct-read-mesh)
   if(TARGET ${program})
     list(APPEND installed ${program})

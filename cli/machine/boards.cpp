@@ -11,6 +11,7 @@
 #include "cli/machine/clock_option.h"
 #include "cli/machine/machine_cycles.h"
 #include "cli/machine/technologies.h"
+#include "cli/programs.h"
 #include "cli/run/estimate.h"
 #include "hw/program/options.h"
 #include "model/base/interrupt.h"
@@ -174,7 +175,7 @@ const CountedPartition& BoardsFindings::fastest() const {
 
 void add_boards(Command& app, int& exit_code) {
   auto options = std::make_shared<BoardsOptions>();
-  Command command = app.command("boards", "cuts a scene's machine into devices: pins, latency, exact cycles");
+  Command command = add_command(app, "boards");
   options->input.add_to(command);
   command.option("--device", options->device, "FPGA to fill; a node is synthesised for it").type_name("NAME");
   command.option("--nodes", options->nodes, "nodes that a device holds, instead of --device")

@@ -6,6 +6,7 @@
 #include "cli/command.h"
 #include "cli/machine/emit.h"
 #include "cli/machine/machine_cycles.h"
+#include "cli/programs.h"
 #include "cli/run/estimate.h"
 #include "cli/run/stages.h"
 #include "hw/program/options.h"
@@ -121,7 +122,7 @@ void emit(EmitOptions options) {
 
 void add_emit(Command& app, int&) {
   auto options = std::make_shared<EmitOptions>();
-  Command command = app.command("emit", "write the scene's machine as a self-contained RTL project");
+  Command command = add_command(app, "emit");
   options->input.add_to(command);
   options->input.add_start_to(command);
   command.option("--out", options->out, "directory, new or of an earlier emission")

@@ -12,6 +12,7 @@
 #include "cli/machine/energy_text.h"
 #include "cli/machine/machine_cycles.h"
 #include "cli/machine/technologies.h"
+#include "cli/programs.h"
 #include "cli/run/estimate.h"
 #include "hw/cost/memory_traffic.h"
 #include "hw/program/options.h"
@@ -79,7 +80,7 @@ int energy(const EnergyOptions& options) {
 
 void add_energy(Command& app, int& exit_code) {
   auto options = std::make_shared<EnergyOptions>();
-  Command command = app.command("energy", "joules, watts and area of a scene's machine, in bands");
+  Command command = add_command(app, "energy");
   options->input.add_to(command);
   command.option("--beside", options->beside, "a second machine description, to compare with the first")
       .type_name("FILE");

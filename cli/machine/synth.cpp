@@ -5,6 +5,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "hw/program/options.h"
 #include "model/base/text.h"
 #include "synth/flow.h"
@@ -19,7 +20,7 @@ void add_synth(Command& app, int&) {
   };
   auto options = std::make_shared<Options>();
   synth::Request& request = options->request;
-  Command command = app.command("synth", "what an emitted project takes on an FPGA or in standard cells");
+  Command command = add_command(app, "synth");
   command.option("project", request.directory, "directory that cuboct emit wrote")
       .required()
       .type_name("DIR");

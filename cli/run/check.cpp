@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "cli/answer.h"
+#include "cli/programs.h"
 #include "cli/run/estimate.h"
 #include "cli/run/load_any.h"
 #include "cli/run/rule_integers.h"
@@ -292,7 +293,7 @@ void add_check(Command& app, int&) {
     Answer answer;
   };
   auto options = std::make_shared<Options>();
-  Command command = app.command("check", "read a scene and print what a run of it does and takes");
+  Command command = add_command(app, "check");
   options->input.add_to(command);
   options->input.add_start_to(command);
   command.flag("--machine", options->machine, "print what would be built: formats, records, cycles");

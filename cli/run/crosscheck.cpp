@@ -9,6 +9,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/run/crosscheck_real.h"
 #include "cli/run/estimate.h"
 #include "cli/run/outputs.h"
@@ -314,7 +315,7 @@ int crosscheck(const CrosscheckOptions& options) {
 
 void add_crosscheck(Command& app, int& exit_code) {
   auto options = std::make_shared<CrosscheckOptions>();
-  Command command = app.command("crosscheck", "run a scene in several engines and compare every bit");
+  Command command = add_command(app, "crosscheck");
   options->input.add_to(command);
   options->input.add_start_to(command);
   options->input.add_stalls_to(command);

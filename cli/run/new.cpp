@@ -9,6 +9,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/run/templates.h"
 #include "hw/program/options.h"
 #include "model/base/json.h"
@@ -83,7 +84,7 @@ const std::string& template_text(const std::string& name) { return template_of(n
 
 void add_new(Command& app, int&) {
   auto options = std::make_shared<NewOptions>();
-  Command command = app.command("new", "write a commented scene to start from");
+  Command command = add_command(app, "new");
   command.option("name", options->name, "the file, NAME.toml").type_name("NAME");
   command.option("--like", options->like, "what it shows: see --list").show_default().type_name("TEMPLATE");
   command.flag("--list", options->list, "tell what templates there are");

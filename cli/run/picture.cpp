@@ -9,6 +9,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/input_file.h"
@@ -76,7 +77,7 @@ void draw(const PictureOptions& options) {
 
 void add_picture(Command& app, int&) {
   auto options = std::make_shared<PictureOptions>();
-  Command command = app.command("picture", "draw the frames of a run's directory, of bodies of any size");
+  Command command = add_command(app, "picture");
   command.option("directory", options->directory, "what 'cuboct run --out' wrote")
       .required()
       .type_name("DIR");

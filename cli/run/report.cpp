@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/answer.h"
+#include "cli/programs.h"
 #include "cli/run/check.h"
 #include "cli/run/load_any.h"
 #include "cli/run/report.h"
@@ -419,7 +420,7 @@ void add_report(Command& app, int&) {
     Answer answer;
   };
   auto options = std::make_shared<Options>();
-  Command command = app.command("report", "make one HTML file of a run's directory");
+  Command command = add_command(app, "report");
   command
       .option("directory", options->directory,
               "what 'cuboct run --out' wrote; traces in its folder "

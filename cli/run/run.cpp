@@ -9,6 +9,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/run/engine_run.h"
 #include "cli/run/estimate.h"
 #include "cli/run/load_any.h"
@@ -253,7 +254,7 @@ int run(RunOptions options) {
 
 void add_run(Command& app, int& exit_code) {
   auto options = std::make_shared<RunOptions>();
-  Command command = app.command("run", "run a scene and end with a summary");
+  Command command = add_command(app, "run");
   options->input.add_to(command);
   options->input.add_start_to(command);
   options->input.add_stalls_to(command);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/study/elastic_text.h"
 #include "hw/program/options.h"
 #include "model/analysis/scene_cell.h"
@@ -190,7 +191,7 @@ int elastic(const ElasticOptions& options) {
 
 void add_elastic(Command& app, int& exit_code) {
   auto options = std::make_shared<ElasticOptions>();
-  Command command = app.command("elastic", "elastic constants, by lattice sums and by strained simulation");
+  Command command = add_command(app, "elastic");
   command.option("scene", options->scene, "scene file (TOML)").type_name("SCENE");
   command.option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]")
       .type_name("KEYS");

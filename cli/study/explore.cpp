@@ -5,6 +5,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/study/budget.h"
 #include "cli/study/explore_machines.h"
 #include "cli/study/study_command.h"
@@ -107,7 +108,7 @@ int explore(const ExploreOptions& options) {
 
 void add_explore(Command& app, int& exit_code) {
   auto options = std::make_shared<ExploreOptions>();
-  Command command = app.command("explore", "chart a study's settings or machines: errors, speed, energy");
+  Command command = add_command(app, "explore");
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".study");
   add_jobs_to(command, options->jobs, "points computed at once");

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "cli/machine/emit.h"
-#include "cli/machine/machine_devices.h"
 #include "cli/machine/technologies.h"
+#include "cli/study/machine_devices.h"
 #include "cli/study/study_command.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/json.h"

@@ -6,6 +6,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/study/bond_fit.h"
 #include "cli/study/study_command.h"
 #include "model/base/json.h"
@@ -178,9 +179,15 @@ int fit_study(const FitOptions& options) {
 
 }  // namespace
 
+#if !CUBOCT_HAS_BOND_FITS
+int fit_bonds(const std::string&, const std::string&, int, const Answer&) {
+  refuse_left_out("fit", kBondFits);
+}
+#endif
+
 void add_fit(Command& app, int& exit_code) {
   auto options = std::make_shared<FitOptions>();
-  Command command = app.command("fit", "find the force law of a curve, or the potential of a crystal");
+  Command command = add_command(app, "fit");
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".fit");
   add_jobs_to(command, options->jobs, "laws tried at once");

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "cli/answer.h"
+#include "cli/programs.h"
 #include "cli/study/learn_cracks.h"
 #include "cli/study/study_command.h"
 #include "model/base/output.h"
@@ -125,7 +126,7 @@ void run(const LearnOptions& options) {
 
 void add_learn(Command& app, int& exit_code) {
   auto options = std::make_shared<LearnOptions>();
-  Command command = app.command("learn", "learn a linear peridynamic solid from a sheet of atoms");
+  Command command = add_command(app, "learn");
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".learn");
   add_jobs_to(command, options->jobs, "samples at once");

@@ -7,6 +7,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/machine/technologies.h"
+#include "cli/programs.h"
 #include "cli/study/multiscale_compare.h"
 #include "cli/study/multiscale_gpu.h"
 #include "cli/study/multiscale_node.h"
@@ -112,7 +113,7 @@ void multiscale(const MultiscaleOptions& options) {
 
 void add_multiscale(Command& app, int& exit_code) {
   auto options = std::make_shared<MultiscaleOptions>();
-  Command command = app.command("multiscale", "stretch or strike a body whose elements carry their atoms");
+  Command command = add_command(app, "multiscale");
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".multiscale");
   command.option("--threads", options->threads, "they change no bit; default: one per core")

@@ -7,6 +7,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/study/budget.h"
 #include "cli/study/study_command.h"
 #include "model/analysis/measure.h"
@@ -162,7 +163,7 @@ int find(const PitchOptions& options) {
 
 void add_pitch(Command& app, int& exit_code) {
   auto options = std::make_shared<PitchOptions>();
-  Command command = app.command("pitch", "find the pitch that keeps a figure within an error");
+  Command command = add_command(app, "pitch");
   command.option("scene", options->scene, "scene file (TOML)").required().type_name("SCENE");
   command.option("--error", options->error, "wanted, of the figure, as 5% or 0.05")
       .show_default()

@@ -10,6 +10,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/programs.h"
 #include "cli/run/outputs.h"
 #include "hw/plan/setup.h"
 #include "hw/program/options.h"
@@ -242,7 +243,7 @@ void stability(const StabilityOptions& options) {
 
 void add_stability(Command& app, int&) {
   auto options = std::make_shared<StabilityOptions>();
-  Command command = app.command("stability", "measure the largest stable time step, beside what theory says");
+  Command command = add_command(app, "stability");
   options->input.add_to(command);
   options->answer.add_to(command);
   command.option("--maps", options->maps, "draw maps of stable and unstable runs there").type_name("DIR");

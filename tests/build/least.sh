@@ -5,7 +5,7 @@
 set -euo pipefail
 root=$1 build=$2
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCUBOCT_{CUDA,FITS,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF >/dev/null
-ninja -C "$build" cuboct cuboct-lattice >"$build/log" 2>&1 || { tail -n 50 "$build/log"; exit 1; }
+ninja -C "$build" cuboct cuboct-machine cuboct-lattice >"$build/log" 2>&1 || { tail -n 50 "$build/log"; exit 1; }
 
 refuses() {  # TEXT ARGUMENT...
   local text=$1 code=0 said

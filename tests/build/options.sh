@@ -37,7 +37,7 @@ says "Fits: left out, as CUBOCT_FITS is OFF"
 says "Synthesis: left out, as CUBOCT_SYNTH is OFF"
 says "The systemc and rtl engines: without their programs, as CUBOCT_SYSTEMC is OFF"
 says "Tests: left out, as CUBOCT_TESTS is OFF"
-has cuboct cuboct-lattice
+has cuboct cuboct-{bench,lattice,machine,study}
 lacks "${parts[@]}" cuboct-gpu
 says "ccache: not used, as CUBOCT_CCACHE is OFF"
 says "mold: not used, as CUBOCT_MOLD is OFF"

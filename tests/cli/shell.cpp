@@ -37,10 +37,16 @@ Bench::Bench(bool fake_engines) {
   if (!mkdtemp(name.data())) throw std::runtime_error("mkdtemp");
   directory_ = name;
   fs::create_directory(directory_ / "bin");
+  const fs::path built = fs::path(CUBOCT_PROGRAM).parent_path();
   fs::copy(CUBOCT_PROGRAM, directory_ / "bin/cuboct");
-  const fs::path evolution = fs::path(CUBOCT_PROGRAM).parent_path() / "cuboct-evolution.so";
-  fs::create_symlink(fs::path(CUBOCT_PROGRAM).parent_path() / "cuboct-read-trace",
-                     directory_ / "bin/cuboct-read-trace");
+  // A program looks beside itself, through symbolic links.
+  for (const char* program : {"cuboct-study", "cuboct-machine", "cuboct-bench"}) {
+    std::error_code other_disk;
+    fs::create_hard_link(built / program, directory_ / "bin" / program, other_disk);
+    if (other_disk) fs::copy(built / program, directory_ / "bin" / program);
+  }
+  const fs::path evolution = built / "cuboct-evolution.so";
+  fs::create_symlink(built / "cuboct-read-trace", directory_ / "bin/cuboct-read-trace");
   if (fs::exists(evolution)) fs::create_symlink(evolution, directory_ / "bin/cuboct-evolution.so");
   if (fake_engines)
     for (const char* engine : {"cuboct-systemc", "cuboct-rtl"})

@@ -33,7 +33,8 @@ bool catches_interrupts(pid_t program);    // SIGINT has a handler
 // Waits until `what` is true; false after ten minutes, which no busy machine needs.
 bool comes(const std::function<bool()>& what);
 
-// A directory of its own for each test, with a copy of cuboct and, if asked, fake engines beside it.
+// A directory of its own for each test, with cuboct, the programs of its other commands and, if asked, fake
+// engines beside it.
 class Bench {
  public:
   explicit Bench(bool fake_engines);

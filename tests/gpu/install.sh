@@ -22,12 +22,14 @@ done
 [ "$checked" -gt 10 ] || { echo "only $checked libraries seen"; exit 1; }
 
 size=$(du -sb --apparent-size "$prefix/bin" "$prefix/lib" | awk '{ sum += $1 } END { print sum }')
-most=56000000
-[ ${#modules[@]} = 0 ] || most=116000000  # with Embree and Assimp
+most=82000000
+[ ${#modules[@]} = 0 ] || most=140000000  # with Embree and Assimp
 [ "$size" -lt "$most" ] || { echo "programs and libraries take $size bytes"; exit 1; }
 
 cd "$prefix"
 env -i "$prefix/bin/cuboct" run scenes/lj_block.toml --steps 2 | grep -q '^engine *lattice$'
+# So did the programs of other commands.
+for command in elastic energy bench; do env -i "$prefix/bin/cuboct" "$command" --help | grep -q "^usage: cuboct $command "; done
 # What reads strangers' files came along, and is found.
 env -i "$prefix/bin/cuboct" run scenes/lj_block.toml --steps 2 --quiet --out first >/dev/null
 env -i "$prefix/bin/cuboct" run scenes/lj_block.toml --steps 2 --quiet --from first | grep -q '^engine *lattice$'

@@ -8,6 +8,7 @@ scratch=$(mktemp -d "$(dirname "$1")/multiscale-XXXXXX")
 trap 'rm -rf "$scratch"' EXIT
 # Side by side under the names that a user has them by, wherever this build has them.
 ln "$1" "$scratch/cuboct"
+ln "$(dirname "$1")/cuboct-study" "$scratch"
 ln "$2" "$scratch/cuboct-gpu"
 cd "$scratch"
 fail() {

@@ -8,11 +8,13 @@ for d in model hw rtl synth emu study cli python tests; do
   [ ! -d "$1/$d" ] || tar -C "$1" --exclude=node_modules -cf - "$d" | tar -C "$copy" -xf -
 done
 echo '#include "hw/plan/plan.h"' >> "$copy/model/contract/state.h"
+echo '#include "cli/study/budget.h"' >> "$copy/cli/run/check.h"
 echo '#include <CLI/App.hpp>' >> "$copy/cli/help.h"
 if out=$(bash "$1/tests/layering/layering.sh" "$copy"); then
   echo "a forbidden include was not seen"; exit 1
 fi
 grep -q 'model/contract/state.h:[0-9]*: model/contract must not include hw/plan/plan.h' <<<"$out"
+grep -q 'cli/run/check.h:[0-9]*: cli/run must not include cli/study/budget.h' <<<"$out"
 grep -q 'cli/help.h: hw/program/options.cpp alone includes CLI11' <<<"$out"
 
 # So must the check of columns see a line that is one too long.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "cli/machine/machine_devices.h"
+#include "cli/study/machine_devices.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// `cuboct-bench`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/front.h"
+#include "cli/programs.h"
 #include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/json.h"
@@ -103,7 +106,7 @@ int bench(const Options& options) {
 
 void add_bench(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  Command command = app.command("bench", "measure how fast the engines are");
+  Command command = add_command(app, "bench");
   command.option("name", options->name, "a benchmark, or the first words of some; default: all")
       .type_name("NAME");
   command.flag("--list", options->list, "name the benchmarks");
@@ -123,3 +126,9 @@ void add_bench(Command& app, int& exit_code) {
 }
 
 }  // namespace cuboct
+
+int main(int argc, char** argv) {
+  using namespace cuboct;
+  constexpr OwnCommand kOwn[] = {{"bench", add_bench}};
+  return front(argc, argv, kOwn);
+}
