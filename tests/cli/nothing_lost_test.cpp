@@ -490,7 +490,8 @@ TEST_F(Ranks, OutliveNobody) {
   if (bench_.cuboct({"run", kScene, "--steps", "1", "--ranks", "2"}).code != 0) GTEST_SKIP() << "no MPI";
   for (const int signal : {SIGKILL, SIGTERM, SIGHUP})
     for (const size_t ranks : {0u, 1u, 4u}) {
-      if (signal != SIGKILL && ranks != 4) continue;  // a signal that can be caught is the same to those that start
+      if (signal != SIGKILL && ranks != 4)
+        continue;  // a signal that can be caught is the same to those that start
       // What a killed one left: its daemon may be taking it away just now.
       ASSERT_TRUE(comes([&] {
         std::error_code busy;
