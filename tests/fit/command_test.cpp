@@ -79,7 +79,7 @@ TEST_F(FitCommand, RefusesBeforeItBegins) {
             "'tension.stress'?\n");
   EXPECT_EQ(refused(with_top(scenes + "lj_block.toml\"\n")),
             "top.toml:1:9: the scene has no probe of the kind 'stress_strain'\n");
-  EXPECT_EQ(refused(with_top(scenes + "study/materials/fit_bar_scene.toml\"\nengine = \"lattice\"\n")),
+  EXPECT_EQ(refused(with_top(scenes + "studies/fit_bar_scene.toml\"\nengine = \"lattice\"\n")),
             "top.toml:2:10: the lattice engine knows motion alone, but the scene's loading is static\n  "
             "hint: leave "
             "'engine' out, or say \"reference\"\n");

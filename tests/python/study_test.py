@@ -16,7 +16,7 @@ class Study(unittest.TestCase):
     def test_columns(self):
         with tempfile.TemporaryDirectory() as folder:
             out = os.path.join(folder, "block")
-            table = cuboct.explore(scene_file("study/materials/block.toml"), out=out, speed=False)
+            table = cuboct.explore(scene_file("studies/block.toml"), out=out, speed=False)
             points = len(table["settings"])
             self.assertGreater(points, 3)
             self.assertEqual({len(column) for column in table.values()}, {points})
@@ -33,7 +33,7 @@ class Study(unittest.TestCase):
             # What is there is not measured again: a mark in it stays.
             with sqlite3.connect(os.path.join(out, "results.db")) as store:
                 store.execute("update points set trajectory = 0.125 where status = 'done'")
-            again = cuboct.explore(scene_file("study/materials/block.toml"), out=out, speed=False)
+            again = cuboct.explore(scene_file("studies/block.toml"), out=out, speed=False)
             self.assertEqual(set(again["error.trajectory"][done]), {0.125})
             again["error.trajectory"] = table["error.trajectory"]
             self.assertEqual({name: list(map(str, column)) for name, column in table.items()},
