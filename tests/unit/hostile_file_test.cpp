@@ -34,7 +34,7 @@ class HostileFile : public testing::Test {
   std::string of_trace(const std::function<void(hid_t)>& change) {
     write_trace(path_, made_trace());
     edit(change);
-    return error([&] { read_trace(path_); });
+    return refused_with([&] { read_trace(path_); });
   }
   // As a run that is to go on takes it.
   std::string of_left_state(const std::function<void(hid_t)>& change) {
@@ -45,7 +45,7 @@ class HostileFile : public testing::Test {
     out.add(setup.initial);
     out.finish({});
     edit(change);
-    return error([&] { EXPECT_EQ(read_left_state(path_).body.size(), scene.body.size()); });
+    return refused_with([&] { EXPECT_EQ(read_left_state(path_).body.size(), scene.body.size()); });
   }
   template <typename T>
   static void overwrite(hid_t file, const char* name, hid_t type, T value) {
@@ -62,7 +62,7 @@ class HostileFile : public testing::Test {
     out.add(frame);
     out.finish();
     edit(change);
-    return error([&] { read_rasters(path_); });
+    return refused_with([&] { read_rasters(path_); });
   }
 
   static void put_number(hid_t file, const char* name, hid_t type, const void* value) {
@@ -239,20 +239,20 @@ TEST(StateCheck, NumbersAreWithinTheScene) {
     return refused_with([&] { check_frames(changed, bounds, "t.h5"); });
   };
   const std::string at = "t.h5 is no trace of this scene: frame of step 0, particle 1: ";
-  EXPECT_EQ(refused_with([](Trace&) {}), "accepted");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].cell = 2; }), at + "cell 2 is not below 2");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].type = 2; }), at + "type 2 is not below 2");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].id = 3; }), at + "id 3 is not below 3");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].id = 2; }), at + "id 2 stands in row 1");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].x[1] = 256; }),
+  EXPECT_EQ(error([](Trace&) {}), "accepted");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].cell = 2; }), at + "cell 2 is not below 2");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].type = 2; }), at + "type 2 is not below 2");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 3; }), at + "id 3 is not below 3");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].id = 2; }), at + "id 2 stands in row 1");
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].x[1] = 256; }),
             at + "position 256 is outside its cell");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].x[1] = -1; }),
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].x[1] = -1; }),
             at + "position -1 is outside its cell");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles[1].v[1] = 1 << 19; }),
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles[1].v[1] = 1 << 19; }),
             at + "velocity 524288 is out of 20 bits");
-  EXPECT_EQ(refused_with([](Trace& t) { t.frames[0].particles.pop_back(); }),
+  EXPECT_EQ(error([](Trace& t) { t.frames[0].particles.pop_back(); }),
             "t.h5 is no trace of this scene: the frame of step 0 has 2 particles, the scene 3");
-  EXPECT_EQ(refused_with([](Trace& t) {
+  EXPECT_EQ(error([](Trace& t) {
               t.bodies.push_back({7, {{0, 0, 0}}, {{0, 0, 0}}, {}, {}});
             }),
             "t.h5 is no trace of this scene: the frame of step 7 has 1 particles, the scene 3");
