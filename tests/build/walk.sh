@@ -21,7 +21,7 @@ git -C "$work/tree" add --all
 git -C "$work/tree" commit -qm tree
 
 sed -n '/^## One change/,/^## Style/p' "$root/CONTRIBUTING.md" >"$work/walk.md"
-blocks=12 texts=6
+blocks=11 texts=6
 if [ "$which" = cheap ]; then
   # With a block that builds goes the text of what it prints.
   awk '/^```/ && !inside {inside = 1; kind = $0; block = $0; next}
