@@ -406,8 +406,10 @@ ParticleType read_constraint(const ConfigTable& table, const ConfigTable* change
     if (const auto axes = table.find("axes"))
       axes->fail(fmt::format("'axes' serves 'held' and 'moved' only, not '{}'", kinds[kind]));
     type.pd = true;
-    const double stiffest = largest_stiffness(rule, pitch);
-    type.kp = table.number_or("kp", quantity::stiffness, 10 * stiffest, Range::positive());
+    // Rounds have no bond of which it could be told here.
+    type.kp = rule.law ? table.number_or("kp", quantity::stiffness, 10 * largest_stiffness(rule, pitch),
+                                         Range::positive())
+                       : table.number("kp", quantity::stiffness, Range::positive());
     type.kd = table.number_or("kd", quantity::damping, rule.damping.coefficient, Range::not_negative());
   }
   return type;

@@ -23,7 +23,7 @@ import numpy as np
 
 import cuboct
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
 class Case:

@@ -18,7 +18,7 @@ import cuboct
 STEPS = 2
 ALL = "all" in sys.argv[3:]
 # Pairs, types, rules of rounds, static loading, stages, and two that are no scenes.
-QUICK = ("lj_block", "two_types", "cracked_glass", "graphene", "study/materials/pitch_bar", "templates/release", "archs/small", "study/materials/block")
+QUICK = ("lj_block", "two_types", "cracked_glass", "graphene", "studies/pitch_bar", "templates/release", "archs/small", "studies/block")
 # What a clock says.
 TIMES = {"host_time", "speed", "particle-steps_per_second", "seconds"}
 

@@ -141,6 +141,12 @@ TEST(LpsScene, WhatCannotBeIsRefusedAtItsKey) {
   has(scene_with("", "[damping]\nratio = 0.1\n"), "s.toml:", "damping by pairs serves the pair law alone");
   has(scene_with("quadrature = \"fitted\"\nstrain = \"small\"\norder = 8\n"), "s.toml:10:9",
       "between 2 and 7");
+  // No pair force says how stiff a holder would have to be.
+  const std::string held =
+      "[[constraint]]\nname = \"grip\"\nkind = \"held_by_force\"\nregion = { shape = \"sphere\", radius = "
+      "\"1 m\" }\n";
+  has(scene_with("", held), "s.toml:", "'kp'");
+  EXPECT_EQ(refusal(scene_with("", held + "kp = \"1e3 N/m\"\n")), "accepted");
   EXPECT_EQ(refusal(scene_with("")), "accepted");
 }
 

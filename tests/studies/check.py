@@ -193,7 +193,7 @@ def parts():
 
 
 def page():
-    text = (STUDIES.parent / "docs/user/material-studies.md").read_text()
+    text = (STUDIES.parent.parent / "docs/user/material-studies.md").read_text()
     program = re.search(r"```python\n(.*?)```", text, re.S)[1]
     with tempfile.TemporaryDirectory() as work:
         file = pathlib.Path(work) / "cube.py"
