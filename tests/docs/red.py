@@ -38,8 +38,9 @@ def main(root):
     failed = 0
     with tempfile.TemporaryDirectory() as work:
         tree = pathlib.Path(work) / "tree"
-        skip = shutil.ignore_patterns(".git", "build*", "node_modules", "out", "__pycache__")
-        shutil.copytree(root, tree, ignore=skip)
+        of_root = shutil.ignore_patterns(".git", "build*", "out")
+        anywhere = shutil.ignore_patterns("node_modules", "__pycache__")
+        shutil.copytree(root, tree, ignore=lambda path, names: anywhere(path, names) | (of_root(path, names) if path == str(root) else set()))
         for check, page, change, expected in DEFECTS:
             path = tree / page
             old = path.read_text()
