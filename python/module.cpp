@@ -166,7 +166,7 @@ py::dict check(const Sources& sources) {
   out["dt"] = scene.rule.dt;
   out["dt_limit"] = scene.dt_limit > 0 ? py::cast(scene.dt_limit) : py::none();
   out["steps"] = scene.steps;
-  const bool machine = scene.rule.rounds == nullptr;
+  const bool machine = scene.rule.rounds == nullptr && plan.rule.cubic();
   out["cells"] = machine ? py::cast(plan.lattice.size()) : py::none();
   out["cell_edge"] = plan.rule.cell_edge;
   out["nodes"] = machine ? py::cast(plan.nodes()) : py::none();

@@ -102,7 +102,7 @@ std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& sce
   if (stop.fault == Fault::none) return "";  // the reason is all that is known
   const Cell& c = plan.lattice.cell(stop.cell);
   Vec3 centre;
-  for (int a = 0; a < 3; ++a) centre[a] = plan.origin[a] + (c[a] + 0.5) * plan.rule.cell_edge;
+  for (int a = 0; a < 3; ++a) centre[a] = plan.origin[a] + (c[a] + 0.5) * plan.rule.edges()[a];
   const std::string dt = stop.fault == Fault::velocity && scene.dt_limit > 0
                              ? fmt::format(" (now {:.3g} of the limit)", scene.rule.dt / scene.dt_limit)
                              : "";

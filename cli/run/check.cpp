@@ -110,8 +110,10 @@ Items physics(const Loaded& loaded);
 }  // namespace
 
 Items resolve(const Loaded& loaded) {
-  // No node runs a rule of text.
-  if (!has_machine(loaded.setup.plan) || loaded.setup.plan.program != nullptr) return physics(loaded);
+  // No node runs a rule of text, or has a cell that is no cube.
+  if (!has_machine(loaded.setup.plan) || loaded.setup.plan.program != nullptr ||
+      !loaded.setup.plan.rule.cubic())
+    return physics(loaded);
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const FixedRule& rule = plan.rule;
@@ -257,8 +259,11 @@ Items physics(const Loaded& loaded) {
     if (!warnings.empty()) add_warnings(items, warnings, {});
     return items;
   }
-  items.add("machine", fmt::format("{} node{}; --machine tells formats, records and cycles", plan.nodes(),
-                                   plan.nodes() == 1 ? "" : "s"));
+  if (!plan.rule.cubic())
+    items.add("machine", "none: nodes have cubic cells, and no cube divides the periodic box");
+  else
+    items.add("machine", fmt::format("{} node{}; --machine tells formats, records and cycles", plan.nodes(),
+                                     plan.nodes() == 1 ? "" : "s"));
   if (!warnings.empty()) add_warnings(items, warnings, {});
   return items;
 }

@@ -220,9 +220,10 @@ struct Crossed {
 // `leave`: a directory for the last state; empty: none is asked for.
 Crossed cross_once(CrosscheckOptions options, const std::string& leave) {
   Loaded loaded{load_scene(options.input.scene, {options.input.stage, options.input.from, false}), {}};
-  if (options.engines.empty()) options.engines = engines_to_cross(loaded.scene);
+  const Arch arch = read_arch(options.input.arch);
+  if (options.engines.empty()) options.engines = engines_to_cross(loaded.scene, arch);
   check_engines(options);
-  loaded.setup.plan = shared_plan_of(loaded.scene, read_arch(options.input.arch), options.engines);
+  loaded.setup.plan = shared_plan_of(loaded.scene, arch, options.engines);
   const bool text = loaded.setup.plan.program != nullptr;
   check_held(loaded.scene, loaded.setup.plan);
   const Scratch scratch;

@@ -8,6 +8,7 @@
 #include "emu/lattice/hash_particles.h"
 #include "emu/lattice/impl.h"
 #include "model/base/error.h"
+#include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 
 namespace cuboct::emu {
@@ -39,6 +40,15 @@ void check_span(const Lattice& lattice, int position_frac) {
   }
 }
 
+// In cells. Lists take these as cubes: the cutoff is more edges of the shortest axis than of the longest.
+double reach_of(const FixedRule& rule) {
+  const double cutoff =
+      std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)), -rule.widths.difference_frac);
+  if (rule.cubic()) return cutoff;
+  const double rounded = std::ldexp(2.0, -rule.widths.difference_frac);
+  return (cutoff + rounded) * rule.cell_edge / rule.edges().shortest();
+}
+
 // The far list's skin at first: in an FCC packing, cutoff 1.6 pitches, it stays clear of the fourth shell.
 constexpr double kFirstSkin = 0.17;
 
@@ -49,8 +59,7 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
       lattice_(plan.lattice),
       options_(options),
       rule_(kernel_rule(plan.rule, plan.arch.capacity)),
-      cutoff_(
-          std::ldexp(std::sqrt(static_cast<double>(plan.rule.cutoff2)), -plan.rule.widths.difference_frac)),
+      cutoff_(reach_of(plan.rule)),
       threads_(thread_count(options, count)),
       step_(step),
       count_(count),
@@ -60,8 +69,11 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
   if (!shared()) check_room(count);
   snapshot_.position_frac = plan.rule.widths.position_frac;
   snapshot_.threads = threads_;
-  if (plan.program != nullptr) {
-    rounds_.emplace(plan.program->program, rule_, lattice_, plan.program->rows.get());
+  if (!plan.rule.cubic() && plan.program == nullptr)
+    own_program_ = pair_program(plan.rule, plan.arch.capacity);
+  if (plan.program != nullptr || own_program_) {
+    rounds_.emplace(own_program_ ? *own_program_ : plan.program->program, rule_, lattice_,
+                    rows_of_bonds().get());
     if (options_.rule_code == RuleCode::compiled) compile_rounds();
   }
   const std::vector<Kernels> here = kernels_here(rule_);
@@ -237,6 +249,7 @@ std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_
 std::vector<Int3> LatticeEngine::kicks() { return impl_->kicks(); }
 
 bool LatticeEngine::kicks(std::span<const uint32_t> ids, std::span<Int3> to) {
+  if (impl_->rounds_) return false;
   if (!impl_->summed_) impl_->summed_ = impl_->sum_pairs();
   if (!impl_->summed_) return false;
   for (size_t k = 0; k < ids.size(); ++k) to[k] = impl_->sums_[impl_->index_(ids[k])];

@@ -83,6 +83,7 @@ struct LatticeEngine::Impl {
 
   // share.cpp
   bool shared() const { return options_.ranks != nullptr && options_.ranks->size() > 1; }
+  std::shared_ptr<const graph::BondRows> rows_of_bonds() const;  // null: the program has none
   void own_cells();
   static void check_room(uint64_t particles);  // InputError where one process cannot hold them
   void make_room(uint32_t stored, uint32_t ghosts);
@@ -100,6 +101,7 @@ struct LatticeEngine::Impl {
   LatticeOptions options_;
   KernelRule rule_;
   Kernels kernels_;
+  std::optional<graph::FixedProgram> own_program_;  // of a pair law in cells that are no cubes
   std::optional<Rounds> rounds_;                    // of a program; else the kernels step the pair law
   std::vector<PaddedArray<double>> fields_before_;  // as the step found them
   uint64_t interpreted_ = 0;                        // entries that rounds_ met so far

@@ -16,7 +16,7 @@ class LatticeProgram : public EngineProgram {
   explicit LatticeProgram(Ranks* ranks) {
     name = "cuboct-lattice";
     description = "Runs a scene on vector units and threads, with the bits of the golden engine";
-    abilities.cycles = abilities.checkpoints = abilities.text = true;
+    abilities.cycles = abilities.checkpoints = abilities.text = abilities.any_cells = true;
     choice_.engine.ranks = ranks;
   }
 

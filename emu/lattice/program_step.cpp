@@ -68,9 +68,13 @@ Stretch LatticeEngine::Impl::fields_of(uint32_t id) const {
   return {id * numbers, (id + 1) * numbers};
 }
 
+std::shared_ptr<const graph::BondRows> LatticeEngine::Impl::rows_of_bonds() const {
+  return plan_.program ? plan_.program->rows : nullptr;
+}
+
 Stretch LatticeEngine::Impl::bonds_of(uint32_t id) const {
   const auto numbers = static_cast<size_t>(rounds_->program().bond_numbers());
-  const std::vector<uint64_t>& first = plan_.program->rows->first;
+  const std::vector<uint64_t>& first = rows_of_bonds()->first;
   return {first[id] * numbers, first[id + 1] * numbers};
 }
 
@@ -119,7 +123,7 @@ void LatticeEngine::Impl::give_bonds(State& state) const {
   if (state.bonds.empty()) return;
   gather(
       state.bonds, [&](uint32_t id) { return bonds_of(id); }, To::first);
-  state.bond_begin = begins_of(*plan_.program->rows, rounds_->program().bond_numbers());
+  state.bond_begin = begins_of(*rows_of_bonds(), rounds_->program().bond_numbers());
 }
 
 uint64_t LatticeEngine::Impl::program_hash() const {
@@ -196,7 +200,7 @@ void LatticeEngine::Impl::fail_as_golden() const {
       for (size_t k = fields_of(id).begin; k < fields_of(id).end; ++k) begin.fields.push_back(fields[k]);
     });
   begin.bonds = std::move(bonds);
-  Golden(rounds_->program(), lattice_, plan_.arch.capacity, begin, plan_.program->rows).step();
+  Golden(rounds_->program(), lattice_, plan_.arch.capacity, begin, rows_of_bonds()).step();
   throw std::logic_error("the lattice engine finds a fault that golden does not");
 }
 

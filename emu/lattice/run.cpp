@@ -69,6 +69,9 @@ class Runner : public StateEngine {
 Runner::Runner(const Scene& scene, const Plan& plan, const LatticeChoice& choice, CheckpointReader* from,
                bool cycles)
     : StateEngine(setting_of(scene, plan, readers(choice.engine))), plan_(plan), ranks_(choice.engine.ranks) {
+  if (cycles && !plan.rule.cubic())
+    throw InputError("the timing model counts cycles of nodes with cubic cells, and no cube divides the box")
+        .about({"box.size", "box.cells", "box"});
   if (cycles && ranks_ && ranks_->size() > 1)
     throw InputError("--cycles: the timing model runs on one rank alone");
   if (cycles) timing_.emplace(plan, choice.engine.threads);

@@ -16,10 +16,15 @@ const std::vector<EngineRow>& engines() {
   const char* kNeverStands =
       "its nodes are never all at the same step: a node begins one while others end the last";
   static const std::vector<EngineRow> rows{
-      {.name = "golden", .here = Here::golden, .text = true, .cost = {40e-9, 0, false, 600, 10, 100}},
+      {.name = "golden",
+       .here = Here::golden,
+       .text = true,
+       .any_cells = true,
+       .cost = {40e-9, 0, false, 600, 10, 100}},
       {.name = "lattice",
        .here = Here::lattice,
        .text = true,
+       .any_cells = true,
        .studied = true,
        .counts_if_asked = true,
        .rule_codes = {"automatic", "interpreted", "compiled"},

@@ -24,6 +24,7 @@ struct EngineRow {
   Here here = Here::none;
   bool bits = true;                          // holds those of the fixed rule
   bool text = false;                         // runs rules that are text, in integers
+  bool any_cells = false;                    // takes a pair law in cells that are no cubes
   bool real = false;                         // computes in real numbers, if told to or always
   bool integrators = false;                  // has several
   bool studied = false;                      // by `cuboct explore`

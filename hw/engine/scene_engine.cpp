@@ -47,7 +47,7 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
   const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
   const bool doubles = row != nullptr && row->here == Here::reference;
   try {
-    return plan_of(scene, arch);
+    return plan_of(scene, arch, row != nullptr && row->any_cells ? Cells::any : Cells::cubes);
   } catch (const InputError&) {
     if (!doubles || formats_hold(scene, arch)) throw;
     return real_plan_of(scene, arch);
@@ -56,11 +56,19 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
 
 Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines) {
   for (const std::string& engine : engines) check_runs(scene, arch, engine);
-  return scene_plan_of(scene, arch, engines.front());
+  // The one that takes the fewest cells.
+  const auto cubes = std::ranges::find_if(engines, [](const std::string& engine) {
+    const EngineRow* row = find_engine(engine);
+    return row != nullptr && row->bits && !row->any_cells;
+  });
+  return scene_plan_of(scene, arch, cubes == engines.end() ? engines.front() : *cubes);
 }
 
-std::vector<std::string> engines_to_cross(const Scene& scene) {
+std::vector<std::string> engines_to_cross(const Scene& scene, const Arch& arch) {
   if (is_text(scene)) return {"golden", "lattice"};
+  if (scene.rule.rounds == nullptr &&
+      with_places(scene, arch, [&] { return cell_edges_of(scene, arch, Cells::any).shape; }) != kCube)
+    return {"golden", "lattice"};
   return {"golden", "lattice", "systemc", "rtl"};
 }
 

@@ -26,7 +26,7 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
 // The same for several engines that hold the same bits: each must run the scene.
 Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines);
 // Those that a crosscheck compares where nobody names any.
-std::vector<std::string> engines_to_cross(const Scene& scene);
+std::vector<std::string> engines_to_cross(const Scene& scene, const Arch& arch);
 
 // Of steps or an interval, as the scene can do them: static loading knows whole load steps.
 uint64_t whole_steps(const Scene& scene, uint64_t steps);

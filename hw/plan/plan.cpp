@@ -107,6 +107,7 @@ uint64_t hash_of(const Plan& plan) {
     hash.add(value);
   hash.add(static_cast<int64_t>(rule.cutoff2)).add(rule.damped).add(rule.scaled).add(rule.pd);
   if (rule.axes != 3) hash.add(rule.axes);
+  for (int a = 0; a < 3 && !rule.cubic(); ++a) hash.add(rule.shape_of(a));
   // One that no type needs, but that a plan carries (hw/arch/carry.h), widens the records.
   if (rule.types.size() == 1 && rule.type_bits > 0) hash.add(rule.type_bits);
   add(hash, rule.force);
@@ -223,7 +224,10 @@ std::string describe(const Plan& plan) {
   line("plan hash", fmt::format("{:016x}", plan.hash));
   line("particles",
        fmt::format("{} of {} type{}", plan.particles, r.types.size(), r.types.size() == 1 ? "" : "s"));
-  const std::string slots = fmt::format("{} slots, cell edge {:.6g} m", plan.arch.capacity, r.cell_edge);
+  const std::string edges = r.cubic() ? fmt::format("cell edge {:.6g} m", r.cell_edge)
+                                      : fmt::format("cell edges {:.6g} x {:.6g} x {:.6g} m", r.edges()[0],
+                                                    r.edges()[1], r.edges()[2]);
+  const std::string slots = fmt::format("{} slots, {}", plan.arch.capacity, edges);
   if (plan.bricks.cells() == 1)
     line("nodes", fmt::format("{} of {}", plan.nodes(), slots));
   else

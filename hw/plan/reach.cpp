@@ -63,8 +63,8 @@ class Spans {
 // same.
 class Reach {
  public:
-  Reach(double edge, const Vec3& origin, const Cell& period)
-      : edge_(edge), origin_(origin), period_(period) {}
+  Reach(const CellEdges& edges, const Vec3& origin, const Cell& period)
+      : edges_(edges), origin_(origin), period_(period) {}
 
   // Every cell that the box touches. 0, or how many those would be: more than can be built, infinite beyond
   // all numbers.
@@ -72,8 +72,8 @@ class Reach {
     double count = 1;
     std::array<Span, 3> box;
     for (int a = 0; a < 3; ++a) {
-      const double first = std::floor((low[a] - origin_[a]) / edge_),
-                   last = std::floor((high[a] - origin_[a]) / edge_);
+      const double first = std::floor((low[a] - origin_[a]) / edges_[a]),
+                   last = std::floor((high[a] - origin_[a]) / edges_[a]);
       const int32_t ring = period_[a];
       count *= ring > 0 ? std::min(last - first + 1, static_cast<double>(ring)) : last - first + 1;
       if (ring > 0 && last - first + 1 >= ring) {
@@ -169,7 +169,7 @@ class Reach {
     return count;
   }
 
-  double edge_;
+  CellEdges edges_;
   Vec3 origin_;
   Cell period_;
   std::unordered_map<Rows, Spans, HashOfRows> boxes_;
@@ -214,17 +214,18 @@ bool check_paths(const Scene& scene, double edge, const Cell& period) {
 
 }  // namespace
 
-std::vector<Cell> reachable_cells(const Scene& scene, double edge, const Vec3& origin, const Cell& period,
-                                  int axes) {
+std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, const Vec3& origin,
+                                  const Cell& period, int axes) {
+  const double edge = edges.longest;
   Vec3 margin = scene.reach_margin.minCoeff() < 0 ? Vec3(Vec3::Constant(edge)) : scene.reach_margin;
   // A point in the middle of the layer stands for its whole height.
   const auto layer = [&](Vec3 x) {
-    if (axes == 2) x.z() = origin.z() + 0.5 * edge;
+    if (axes == 2) x.z() = origin.z() + 0.5 * edges[2];
     return x;
   };
   if (axes == 2) margin.z() = 0;
   const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
-  Reach reach(edge, origin, period);
+  Reach reach(edges, origin, period);
   const auto refuse = [&](const std::vector<std::string>& causes, const std::string& what, double count,
                           const std::string& hint) {
     if (std::isinf(count))

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "hw/arch/cell_box.h"
 #include "hw/plan/reach.h"
@@ -22,9 +23,24 @@
 namespace cuboct {
 namespace {
 
-// A periodic axis must be a ring of whole cells, all of one edge: the shortest edge, not below `least`, that
-// divides every periodic extent. Without periodic axes it is `least`.
-double periodic_edge(const Scene& scene, double least) {
+std::optional<CellEdges> edges_by_axis(const Vec3& extent, double least) {
+  Vec3 edge = Vec3::Zero();
+  for (int a = 0; a < 3; ++a) {
+    if (extent[a] == 0) continue;
+    const double count = std::floor(extent[a] / least * (1 + 1e-12));
+    if (count < 3) return std::nullopt;
+    edge[a] = extent[a] / count;
+  }
+  CellEdges edges(edge.maxCoeff());
+  for (int a = 0; a < 3; ++a)
+    if (edge[a] > 0) edges.shape[static_cast<size_t>(a)] = edge[a] / edges.longest;
+  return edges;
+}
+
+// A periodic axis must be a ring of whole cells. Cubes: of the shortest edge, not below `least`, that divides
+// every periodic extent; without periodic axes it is `least`. Where there is none, and any cells will do,
+// each periodic axis has an edge of its own, and others have the longest of these.
+CellEdges periodic_edges(const Scene& scene, double least, Cells cells) {
   constexpr double kMostInRow = 1e7;
   const Vec3& extent = scene.periodic.extent;
   const double longest = extent.maxCoeff();
@@ -38,19 +54,24 @@ double periodic_edge(const Scene& scene, double least) {
     const double edge = longest / n;
     bool fits = true;
     for (int a = 0; a < 3; ++a) {
-      const double cells = extent[a] / edge;
-      if (extent[a] > 0 && (std::abs(cells - std::round(cells)) > 1e-9 * cells || std::round(cells) < 3))
+      const double count = extent[a] / edge;
+      if (extent[a] > 0 && (std::abs(count - std::round(count)) > 1e-9 * count || std::round(count) < 3))
         fits = false;
     }
     if (fits) return edge;
   }
+  if (cells == Cells::any)
+    if (const std::optional<CellEdges> edges = edges_by_axis(extent, least)) return *edges;
   scene.places.fail(
       causes,
       fmt::format(
           "no cell edge of at least {:.6g} m divides the periodic box {:.6g} x {:.6g} x {:.6g} m into 3 "
           "or more cells per axis",
           least, extent[0], extent[1], extent[2]),
-      "use a larger box, or one whose sides have a common part");
+      cells == Cells::any
+          ? fmt::format("use a larger box: {:.6g} m or more along each periodic axis", 3 * least)
+          : "use a larger box, or one whose sides have a common part; engines golden and lattice need no "
+            "such part");
 }
 
 // Whether nothing happens along z: all particles share one height, none moves, is pulled or driven off it,
@@ -60,7 +81,7 @@ bool is_flat(const Scene& scene, const FixedRule& rule, double lowest) {
   if (scene.periodic.extent[2] > 0 || scene.body.size() == 0) return false;
   for (const FixedType& type : rule.types)
     if (type.velocity[2] != 0 || type.gravity[2] != 0) return false;
-  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const double unit = position_units(rule)[2];
   const Body& body = scene.body;
   for (size_t id = 0; id < body.size(); ++id) {
     if (std::llround((body.x[id][2] - lowest) / unit) != 0) return false;
@@ -80,14 +101,13 @@ constexpr double kMayComeIn = 0.2;
 // Particles that the fullest cell may hold with those that may come in through its faces, and a quarter more:
 // a multiple of four. A power of two that holds the former is enough: with one particle more, each memory
 // doubles.
-int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const Vec3& origin) {
+int capacity_for(const Scene& scene, const Lattice& lattice, const CellEdges& edges, const Vec3& origin) {
   const double pitch = scene.pitch > 0 ? scene.pitch : scene.rule.cutoff();
-  const double reach = kMayComeIn * pitch / edge;
   std::vector<uint32_t> count(lattice.size(), 0);
   for (const Vec3& x : scene.body.x) {
     std::array<std::array<int32_t, 2>, 3> near;
     for (int a = 0; a < 3; ++a) {
-      const double at = (x[a] - origin[a]) / edge;
+      const double at = (x[a] - origin[a]) / edges[a], reach = kMayComeIn * pitch / edges[a];
       near[a] = {static_cast<int32_t>(std::floor(at - reach)), static_cast<int32_t>(std::floor(at + reach))};
     }
     for (int32_t cz = near[2][0]; cz <= near[2][1]; ++cz)
@@ -101,11 +121,11 @@ int capacity_for(const Scene& scene, const Lattice& lattice, double edge, const 
 }
 
 // The rule in integers. Where formats that the arch file sets cannot hold it, the hint names those that can.
-FixedRule fixed_rule(const Scene& scene, const Arch& arch, double edge, const AutoWidths& chosen) {
+FixedRule fixed_rule(const Scene& scene, const Arch& arch, const CellEdges& edges, const AutoWidths& chosen) {
   try {
-    return quantise(scene.rule, edge, chosen.widths, arch.table, chosen.half_unit);
+    return quantise(scene.rule, edges, chosen.widths, arch.table, chosen.half_unit);
   } catch (const InputError& error) {
-    const AutoWidths free = auto_widths(scene, edge, automatic_widths());
+    const AutoWidths free = auto_widths(scene, edges.longest, automatic_widths());
     std::string changes;
     for (const WidthReason& reason : chosen.reasons)
       for (const WidthReason& other : free.reasons)
@@ -113,7 +133,7 @@ FixedRule fixed_rule(const Scene& scene, const Arch& arch, double edge, const Au
           changes += fmt::format("{}{} = {}", changes.empty() ? "" : ", ", other.key, other.bits);
     if (changes.empty()) throw;
     try {
-      quantise(scene.rule, edge, free.widths, arch.table, free.half_unit);
+      quantise(scene.rule, edges, free.widths, arch.table, free.half_unit);
     } catch (const InputError&) {
       throw error;
     }
@@ -167,39 +187,41 @@ void add_program(const RuleProgram& text, const Scene& scene, const Body& begin,
 
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
-Plan plan_with(const Scene& scene, Arch arch, See see, bool programs = false) {
+Plan plan_with(const Scene& scene, Arch arch, Cells cells_of, See see, bool programs = false) {
   const RuleProgram* text = programs ? text_of(scene.rule) : nullptr;
   if (text == nullptr) refuse_rounds(scene.rule, "a machine");
-  const double edge = cell_edge_of(scene, arch);
+  const CellEdges edges = cell_edges_of(scene, arch, cells_of);
+  const double edge = edges.longest;
   // Cells start a quarter of an edge below the packing, so that the planes of an aligned crystal do not lie
   // on faces; along z a flat body's only plane does.
   Vec3 origin = Vec3::Constant(INFINITY);
   for (const Vec3& x : scene.packing().x) origin = origin.cwiseMin(x);
   const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
-  FixedRule rule = text != nullptr ? quantise_without_law(scene.rule, edge, chosen.widths)
-                                   : fixed_rule(scene, arch, edge, chosen);
+  FixedRule rule = text != nullptr ? quantise_without_law(scene.rule, edges, chosen.widths)
+                                   : fixed_rule(scene, arch, edges, chosen);
   arch.widths = rule.widths;
   arch.table.index_bits = rule.force.index_bits;
   const double lowest = origin[2];
   const bool flat = is_flat(scene, rule, lowest);
-  origin.array() -= 0.25 * edge;
   Cell period{};
-  for (int a = 0; a < 3; ++a)
+  for (int a = 0; a < 3; ++a) {
+    origin[a] -= 0.25 * edges[a];
     if (scene.periodic.extent[a] > 0) {
-      period[a] = static_cast<int32_t>(std::lround(scene.periodic.extent[a] / edge));
+      period[a] = static_cast<int32_t>(std::lround(scene.periodic.extent[a] / edges[a]));
       origin[a] = scene.periodic.origin[a];
     }
+  }
 
   // And half a unit of a visible position lower: a particle on a multiple of the unit stands in the middle of
   // the range that looks the same.
-  origin.array() -= std::ldexp(0.5 * edge, -rule.widths.position_frac);
+  for (int a = 0; a < 3; ++a) origin[a] -= std::ldexp(0.5 * edges[a], -rule.widths.position_frac);
   if (flat) origin[2] = lowest;
   rule.axes = flat ? 2 : 3;
-  std::vector<Cell> cells = reachable_cells(scene, edge, origin, period, rule.axes);
+  std::vector<Cell> cells = reachable_cells(scene, edges, origin, period, rule.axes);
   if (arch.carry.empty_nodes) cells = filled_box(cells, arch);
   Lattice lattice(std::move(cells), period);
   rule = carrying(std::move(rule), arch.carry);
-  if (arch.capacity == kAutomatic) arch.capacity = capacity_for(scene, lattice, edge, origin);
+  if (arch.capacity == kAutomatic) arch.capacity = capacity_for(scene, lattice, edges, origin);
   std::vector<uint32_t> count(lattice.size(), 0);
   uint32_t fullest = 0;
   for (uint32_t id = 0; id < scene.body.size(); ++id) {
@@ -212,7 +234,7 @@ Plan plan_with(const Scene& scene, Arch arch, See see, bool programs = false) {
         {"node.capacity"},
         fmt::format("a cell would hold {} particles: its capacity is {}", fullest, arch.capacity),
         fullest <= kMostCapacity ? fmt::format("set node.capacity to at least {} in the arch file", fullest)
-        : edge > scene.rule.cutoff() * (1 + 1e-9)
+        : edges.shortest() > scene.rule.cutoff() * (1 + 1e-9)
             ? fmt::format("a cell holds at most {}: a shorter node.cell_edge", kMostCapacity)
             : fmt::format(
                   "a cell, as long as the pair law's cutoff, holds at most {}: a shorter cutoff, or doubles "
@@ -256,7 +278,7 @@ Particle InitialParticles::operator()(uint32_t id) {
   return fixed_particle(body_, id, plan_.rule, plan_.lattice, plan_.origin);
 }
 
-double cell_edge_of(const Scene& scene, const Arch& arch) {
+CellEdges cell_edges_of(const Scene& scene, const Arch& arch, Cells cells) {
   // A bond that counts is met among the 27 cells, however it is stretched within its tables.
   const RuleProgram* text = text_of(scene.rule);
   const bool lasting = text != nullptr && text->declaration.bonds == BondRange::reference;
@@ -266,22 +288,22 @@ double cell_edge_of(const Scene& scene, const Arch& arch) {
         {"node.cell_edge"},
         fmt::format("cell_edge = {:.6g} m is shorter than {}, {:.6g} m", arch.cell_edge,
                     lasting ? "the reach of bonds that stretch by 1/8" : "the pair law's cutoff", cutoff));
-  return periodic_edge(scene, std::max(cutoff, arch.cell_edge));
+  return periodic_edges(scene, std::max(cutoff, arch.cell_edge), cells);
 }
 
 Arch settled(const Scene& scene, Arch arch) {
-  arch.widths = auto_widths(scene, cell_edge_of(scene, arch), arch.widths).widths;
+  arch.widths = auto_widths(scene, cell_edges_of(scene, arch, Cells::any).longest, arch.widths).widths;
   return arch;
 }
 
-Plan plan_of(const Scene& scene, const Arch& arch) {
-  return with_places(scene, arch, [&] { return plan_with(scene, arch, [](const Particle&) {}); });
+Plan plan_of(const Scene& scene, const Arch& arch, Cells cells) {
+  return with_places(scene, arch, [&] { return plan_with(scene, arch, cells, [](const Particle&) {}); });
 }
 
 Plan program_plan_of(const Scene& scene, const Arch& arch) {
   return with_places(scene, arch, [&] {
     return plan_with(
-        scene, arch, [](const Particle&) {}, true);
+        scene, arch, Cells::any, [](const Particle&) {}, true);
   });
 }
 
@@ -289,7 +311,7 @@ Setup make_setup(const Scene& scene, const Arch& arch) {
   State initial;
   initial.particles.reserve(scene.body.size());
   const auto keep = [&](const Particle& particle) { initial.particles.push_back(particle); };
-  Plan plan = with_places(scene, arch, [&] { return plan_with(scene, arch, keep); });
+  Plan plan = with_places(scene, arch, [&] { return plan_with(scene, arch, Cells::cubes, keep); });
   return {std::move(plan), std::move(initial)};
 }
 
@@ -297,8 +319,8 @@ Setup going_on(const Scene& scene, const Plan& before, const State& now, const B
   const FixedRule& old = before.rule;
   const Arch& arch = before.arch;
   FixedRule rule = with_places(scene, arch, [&] {
-    return before.program ? quantise_without_law(scene.rule, old.cell_edge, old.widths)
-                          : quantise(scene.rule, old.cell_edge, old.widths, arch.table);
+    return before.program ? quantise_without_law(scene.rule, old.edges(), old.widths)
+                          : quantise(scene.rule, old.edges(), old.widths, arch.table);
   });
   rule.axes = old.axes;
   for (const FixedType& type : rule.types)
@@ -306,7 +328,7 @@ Setup going_on(const Scene& scene, const Plan& before, const State& now, const B
       throw InputError("the scene began flat, and its machine has no third axis: nothing can move along z",
                        "a scene whose own constraints or gravity act along z is built with three axes");
   std::vector<Cell> cells =
-      reachable_cells(scene, old.cell_edge, before.origin, before.lattice.period(), rule.axes);
+      reachable_cells(scene, old.edges(), before.origin, before.lattice.period(), rule.axes);
   if (arch.carry.empty_nodes) cells = filled_box(cells, arch);
   Lattice lattice(std::move(cells), before.lattice.period());
   State state = now;

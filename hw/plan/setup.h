@@ -30,16 +30,19 @@ struct Setup {
 // machine cannot hold the scene: a cell too full, a particle too fast, ...
 Setup make_setup(const Scene& scene, const Arch& arch);
 
-// The edge of a cell, m: the law's cutoff or the arch's, in a box that repeats the next length that divides
-// it.
-double cell_edge_of(const Scene& scene, const Arch& arch);
+// Nodes of a machine have cubic cells. In a periodic box that no cube divides golden and the lattice engine
+// take cells with an edge of its own along each axis.
+enum class Cells : uint8_t { cubes, any };
+
+// A cell's edges, m: the law's cutoff or the arch's, in a box that repeats the next length that divides it.
+CellEdges cell_edges_of(const Scene& scene, const Arch& arch, Cells cells);
 
 // `arch` with the formats that are automatic settled by this scene, but for the tables' width: for studies
 // that change the scene and mean the same machine.
 Arch settled(const Scene& scene, Arch arch);
 
 // The same plan and errors, without a State in memory.
-Plan plan_of(const Scene& scene, const Arch& arch);
+Plan plan_of(const Scene& scene, const Arch& arch, Cells cells = Cells::cubes);
 
 // Of a rule that is text too: Plan::program has it in integers. No machine is made of such a plan yet.
 Plan program_plan_of(const Scene& scene, const Arch& arch);

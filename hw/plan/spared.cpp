@@ -38,7 +38,7 @@ std::optional<LooserFormats> looser_formats(const Scene& scene, const Plan& plan
   Scene loose = scene;
   loose.accuracy *= 10;
   const AutoWidths chosen = auto_widths(loose, rule.cell_edge, automatic_widths());
-  FixedRule other = quantise(loose.rule, rule.cell_edge, chosen.widths, plan.arch.table, chosen.half_unit);
+  FixedRule other = quantise(loose.rule, rule.edges(), chosen.widths, plan.arch.table, chosen.half_unit);
   other.axes = rule.axes;
   other = carrying(std::move(other), plan.arch.carry);
   const Words words = words_of(other, plan.arch, plan.particles);

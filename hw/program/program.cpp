@@ -84,7 +84,8 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   const bool leads = program.leads();
   const RoundsRule* rounds = scene.rule.rounds.get();
   const bool text = program.abilities.text && rounds != nullptr && rounds->text() != nullptr;
-  const Plan plan = text ? program_plan_of(scene, arch) : plan_of(scene, arch);
+  const Cells cells = program.abilities.any_cells ? Cells::any : Cells::cubes;
+  const Plan plan = text ? program_plan_of(scene, arch) : plan_of(scene, arch, cells);
   settle(program, parsed, scene);
 
   std::optional<TraceWriter> writer;

@@ -30,6 +30,7 @@ struct ProgramAbilities {
   bool forces = false;          // --forces
   bool checkpoints = false;     // --checkpoint, --checkpoint-every, --resume
   bool text = false;            // rules that are text
+  bool any_cells = false;       // a pair law in cells that are no cubes
   uint64_t steps = UINT64_MAX;  // that a machine can count
 };
 

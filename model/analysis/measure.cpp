@@ -146,11 +146,13 @@ std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, co
   return sums;
 }
 
-double newtons_per_kick(const FixedRule& rule) { return velocity_unit(rule) * rule.mass / rule.dt; }
+Vec3 newtons_per_kick(const FixedRule& rule) { return velocity_units(rule) * rule.mass / rule.dt; }
 
-Vec3 force_of(const FixedRule& rule, const Int3& kick) { return newtons_per_kick(rule) * as_real(kick); }
+Vec3 force_of(const FixedRule& rule, const Int3& kick) {
+  return newtons_per_kick(rule).cwiseProduct(as_real(kick));
+}
 
-Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, double unit) {
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, const Vec3& unit) {
   const FixedType& type = rule.types[particle.type];
   Vec3 v;
   for (int axis = 0; axis < 3; ++axis) {
@@ -161,20 +163,20 @@ Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& ki
       gain -= std::ldexp(static_cast<double>(type.kp * particle.u[axis] +
                                              type.kd * (particle.v[axis] - type.velocity[axis])),
                          -rule.widths.gain_frac);
-    v[axis] = (static_cast<double>(particle.v[axis]) + gain / 2) * unit;
+    v[axis] = (static_cast<double>(particle.v[axis]) + gain / 2) * unit[axis];
   }
   return v;
 }
 
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick) {
-  return velocity_of(rule, particle, kick, velocity_unit(rule));
+  return velocity_of(rule, particle, kick, velocity_units(rule));
 }
 
 Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
                   const State& state, const std::vector<Int3>& kicks, const NearPairs& near, int threads,
                   ClosestPair* closest, std::vector<PairAcross>* across) {
-  const double length = std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac());
-  const double speed = velocity_unit(fixed);
+  const CellEdges edges = fixed.edges();
+  const Vec3 length = position_units(fixed), speed = velocity_units(fixed);
   std::vector<double> masses;  // by type
   for (size_t type = 0; type < rule.types.size(); ++type)
     masses.push_back(mass_of(fixed, static_cast<int>(type)));
@@ -186,7 +188,7 @@ Energies energies(const Rule& rule, const FixedRule& fixed, const Lattice& latti
     const Vec3 velocity = velocity_of(fixed, particle, kicks[i], speed);
     for (int axis = 0; axis < 3; ++axis) {
       const double x =
-          origin[axis] + cell[axis] * fixed.cell_edge + static_cast<double>(particle.x[axis]) * length;
+          origin[axis] + cell[axis] * edges[axis] + static_cast<double>(particle.x[axis]) * length[axis];
       const double v = velocity[axis], kinetic = 0.5 * mass * v * v;
       sum.kinetic += kinetic;
       if (is_free(type, axis)) sum.free.kinetic += kinetic, sum.free.velocities[axis] += relative * v;
@@ -277,11 +279,12 @@ Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& s
     add(by_image[static_cast<size_t>(k)],
         {Int128{k % 3 - 1} * near.period()[0], Int128{k / 3 % 3 - 1} * near.period()[1],
          Int128{k / 9 - 1} * near.period()[2]});
-  const double length = std::ldexp(rule.cell_edge, -frac);
+  const Vec3 length = position_units(rule), newtons = newtons_per_kick(rule);
   Mat3 stress;
   for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) stress(a, b) = static_cast<double>(sum[a][b]);
-  return stress * (newtons_per_kick(rule) * length / volume);
+    for (int b = 0; b < 3; ++b)
+      stress(a, b) = static_cast<double>(sum[a][b]) * (newtons[a] * length[b] / volume);
+  return stress;
 }
 
 Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& state, double volume,

@@ -23,8 +23,9 @@ namespace cuboct {
 std::vector<Int3> summed_kicks(const FixedRule& rule, const Lattice& lattice, const State& state,
                                int threads = 0);
 
-// Newtons per unit of a kick: a kick of one cell edge per step is cell_edge/dt in velocity, gained within dt.
-double newtons_per_kick(const FixedRule& rule);
+// Newtons per unit of a kick along each axis: a kick of one cell edge per step is that edge/dt in velocity,
+// gained within dt.
+Vec3 newtons_per_kick(const FixedRule& rule);
 Vec3 force_of(const FixedRule& rule, const Int3& kick);  // N
 // m/s, at the time of the positions: v + dv/2 with all that the step adds to v, which lives half a step
 // earlier.

@@ -54,8 +54,8 @@ int64_t minus(int64_t a, int64_t b) {
 
 // Piece by piece: differences one by one, as gathers and compressed stores cost more than single numbers;
 // their lengths in vectors; and those inside the cutoff, without a branch for each.
-void near_distances(const ListedPairs& pairs, double unit, double cutoff, PairDistances& inside,
-                    std::vector<PairAcross>& across) {
+void near_distances(const ListedPairs& pairs, double unit, const CellShape& shape, double cutoff,
+                    PairDistances& inside, std::vector<PairAcross>& across) {
   constexpr size_t kPiece = 256, kRoom = kPiece + HWY_MAX_BYTES / sizeof(double);
   double d[3][kRoom] = {}, r[kRoom];
   const double* const along[3] = {d[0], d[1], d[2]};
@@ -79,7 +79,7 @@ void near_distances(const ListedPairs& pairs, double unit, double cutoff, PairDi
           images[m] = image_of(half, of);
           for (size_t a = 0; a < 3; ++a) of[a] += images[m][a] * pairs.period[a];
         }
-        for (size_t a = 0; a < 3; ++a) d[a][m] = static_cast<double>(of[a]);
+        for (size_t a = 0; a < 3; ++a) d[a][m] = static_cast<double>(of[a]) * shape[a];
       }
       HWY_DYNAMIC_DISPATCH(lengths)(along, count, unit, r);
       if (ring)

@@ -35,8 +35,9 @@ struct ListedPairs {
 };
 
 // Those of the pairs whose distance, `unit` (m) times that of their integers, is below `cutoff` (m); and into
-// `across` those that meet through a seam, at any distance. |differences| < 2^53.
-void near_distances(const ListedPairs& pairs, double unit, double cutoff, PairDistances& inside,
-                    std::vector<PairAcross>& across);
+// `across` those that meet through a seam, at any distance. |differences| < 2^53; those along an axis count
+// `shape` units.
+void near_distances(const ListedPairs& pairs, double unit, const CellShape& shape, double cutoff,
+                    PairDistances& inside, std::vector<PairAcross>& across);
 
 }  // namespace cuboct

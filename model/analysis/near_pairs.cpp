@@ -27,20 +27,21 @@ NearPairs::NearPairs(const FixedRule& rule, const Lattice& lattice, int threads)
     : lattice_(lattice),
       frac_(rule.widths.velocity_frac()),
       threads_(threads),
-      unit_(std::ldexp(rule.cell_edge, -rule.widths.velocity_frac())) {
+      unit_(std::ldexp(rule.cell_edge, -rule.widths.velocity_frac())),
+      shape_(rule.shape) {
   // Forces see rounded differences.
   const int D = rule.widths.difference_frac;
   cutoff_ = std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)) + 2, -D);
   for (size_t a = 0; a < 3; ++a) period_[a] = int64_t{lattice.period()[a]} << frac_;
 }
 
-// The farthest that a particle is from where the list found it, in cells.
+// The farthest that a particle is from where the list found it.
 double NearPairs::moved() const {
   double most = 0;
   for (size_t i = 0; i < x_.size(); ++i) {
     const Int3 d = between(at_[i], x_[i]);
     double r2 = 0;
-    for (const int64_t along : d) r2 += static_cast<double>(along) * static_cast<double>(along);
+    for (size_t a = 0; a < 3; ++a) r2 += std::pow(static_cast<double>(d[a]) * shape_[a], 2);
     most = std::max(most, r2);
   }
   return std::ldexp(std::sqrt(most), -frac_) * (1 + 1e-9);
@@ -74,7 +75,7 @@ void NearPairs::take(const State& state) {
 void NearPairs::distances(size_t block, double cutoff, PairDistances& inside,
                           std::vector<PairAcross>& across) const {
   near_distances({x_.data(), period_, first_of(block), first_of(block + 1), first_.data(), other_.data()},
-                 unit_, cutoff, inside, across);
+                 unit_, shape_, cutoff, inside, across);
 }
 
 void NearPairs::list() {
@@ -82,10 +83,11 @@ void NearPairs::list() {
   states_ = 0;
   ++lists_made_;
   Periodic periodic;
-  for (size_t a = 0; a < 3; ++a) periodic.extent[a] = lattice_.period()[a];
-  std::vector<Vec3> place(x_.size());  // cells
+  for (size_t a = 0; a < 3; ++a) periodic.extent[a] = lattice_.period()[a] * shape_[a];
+  std::vector<Vec3> place(x_.size());
   for (size_t i = 0; i < x_.size(); ++i)
-    for (size_t a = 0; a < 3; ++a) place[i][a] = std::ldexp(static_cast<double>(x_[i][a]), -frac_);
+    for (size_t a = 0; a < 3; ++a)
+      place[i][a] = std::ldexp(static_cast<double>(x_[i][a]), -frac_) * shape_[a];
   CellList cells(cutoff_, periodic, skin_);
   cells.build(place);
   const std::span<const uint32_t> order = cells.order();

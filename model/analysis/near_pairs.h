@@ -57,10 +57,11 @@ class NearPairs {
 
   const Lattice& lattice_;
   int frac_, threads_;
-  double unit_;          // m, of the last of P+G fractional bits
-  double cutoff_;        // cells
-  Int3 period_{};        // P+G fractional bits; 0: none
-  double skin_ = 0;      // cells
+  double unit_;  // m, of the last of P+G fractional bits of the longest edge
+  CellShape shape_;
+  double cutoff_;  // longest edges, as all distances here
+  Int3 period_{};  // P+G fractional bits; 0: none
+  double skin_ = 0;
   uint64_t states_ = 0;  // that the list has served
   uint64_t lists_made_ = 0;
   std::vector<Int3> x_;   // by id, from cell (0, 0, 0)

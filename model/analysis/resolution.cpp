@@ -214,7 +214,7 @@ std::optional<Resolution::Lack> Resolution::see_led(const Moment& moment) const 
     double error = 0, least = 0;
     for (int a = 0; a < 3; ++a) {
       const double units =
-          std::ldexp(type.velocity[a] * rule.dt / rule.cell_edge, rule.widths.velocity_frac());
+          std::ldexp(type.velocity[a] * rule.dt / rule.edges()[a], rule.widths.velocity_frac());
       error = std::hypot(error, units - static_cast<double>(rule.types[led.type].velocity[a]));
       least = std::hypot(least, units);
     }

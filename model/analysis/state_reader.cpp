@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/state_reader.h"
 
-#include <cmath>
-
 namespace cuboct {
 
 ParticleReader::ParticleReader(const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
@@ -12,16 +10,17 @@ ParticleReader::ParticleReader(const FixedRule& fixed, const Lattice& lattice, c
       origin_(origin),
       forces_(asked.forces),
       velocities_(asked.velocities),
-      length_(std::ldexp(fixed.cell_edge, -fixed.widths.velocity_frac())),
-      speed_(velocity_unit(fixed)),
+      length_(position_units(fixed)),
+      speed_(velocity_units(fixed)),
       newtons_(newtons_per_kick(fixed)) {}
 
 void ParticleReader::add(const Particle& particle, const Int3& kick, Reading& reading) const {
   const Cell& cell = lattice_.cell(particle.cell);
+  const CellEdges edges = fixed_.edges();
   Vec3 x, force = Vec3::Zero();
   for (int a = 0; a < 3; ++a) {
-    x[a] = origin_[a] + cell[a] * fixed_.cell_edge + static_cast<double>(particle.x[a]) * length_;
-    if (forces_) force[a] = newtons_ * static_cast<double>(kick[a]);
+    x[a] = origin_[a] + cell[a] * edges[a] + static_cast<double>(particle.x[a]) * length_[a];
+    if (forces_) force[a] = newtons_[a] * static_cast<double>(kick[a]);
   }
   reading.x.push_back(x), reading.force.push_back(force);
   if (velocities_) reading.v.push_back(velocity_of(fixed_, particle, kick, speed_));

@@ -19,7 +19,7 @@ Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& s
                    const std::vector<PairAcross>& across);
 
 // `unit`: velocity_unit of the rule.
-Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, double unit);
+Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, const Vec3& unit);
 
 // What is asked of single particles.
 class ParticleReader {
@@ -36,7 +36,7 @@ class ParticleReader {
   const Lattice& lattice_;
   const Vec3& origin_;
   bool forces_, velocities_;
-  double length_, speed_, newtons_;  // of a unit of position, velocity, kick
+  Vec3 length_, speed_, newtons_;  // of a unit of position, velocity, kick
 };
 
 // Reads the states of one run, in the order of their steps.

@@ -428,10 +428,10 @@ void Watch::see_rest(const Moment& moment) {
 
 void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
                 const std::vector<Int3>& kicks, const Energies& energies, const ClosestPair& closest) {
-  const double speed = std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+  const Vec3 speed = velocity_units(rule);
   const auto real = [speed](const Int3& v) {
-    return Vec3(speed * static_cast<double>(v[0]), speed * static_cast<double>(v[1]),
-                speed * static_cast<double>(v[2]));
+    return Vec3(speed[0] * static_cast<double>(v[0]), speed[1] * static_cast<double>(v[1]),
+                speed[2] * static_cast<double>(v[2]));
   };
   Moment moment;
   moment.step = state.step;
@@ -452,7 +452,7 @@ void Watch::see(const FixedRule& rule, const Lattice& lattice, const Vec3& origi
   moment.u = [&](uint32_t id) -> Vec3 { return rule.dt * real(state.particles[id].u); };
   moment.fixed = &rule;
   // Four units of a position per step: below, kicks are those of rounded positions.
-  moment.noise = 4 * std::ldexp(speed, rule.widths.guard);
+  moment.noise = 4 * std::ldexp(speed.maxCoeff(), rule.widths.guard);
   moment.energies = energies;
   moment.closest = closest;
   see(moment);

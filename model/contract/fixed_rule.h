@@ -45,11 +45,27 @@ struct FixedType {
   int64_t kd = 0;  // per step, gain_frac fractional bits
 };
 
+// A cell's edges along x, y and z: shares of the longest, in (0, 1]. Others than 1 where a periodic box has
+// no cubic cells.
+using CellShape = std::array<double, 3>;
+inline constexpr CellShape kCube = {1, 1, 1};
+
+struct CellEdges {
+  double longest = 0;  // m
+  CellShape shape = kCube;
+
+  CellEdges(double edge) : longest(edge) {}
+  CellEdges(double edge, const CellShape& of) : longest(edge), shape(of) {}
+  double operator[](int axis) const { return longest * shape[static_cast<size_t>(axis)]; }
+  double shortest() const { return longest * *std::ranges::min_element(shape); }
+};
+
 struct FixedRule {
   Widths widths;
-  double cell_edge = 0;  // m
-  double dt = 0;         // s
-  double mass = 0;       // kg, the lightest material's: kicks and tables count in it
+  double cell_edge = 0;     // m, the longest
+  CellShape shape = kCube;  // of a cell; positions, velocities and kicks count edges of their own axis
+  double dt = 0;            // s
+  double mass = 0;          // kg, the lightest material's: kicks and tables count in it
 
   uint64_t cutoff2 = 0;  // 2D fractional bits; r2 >= cutoff2: no interaction
   // Adder-only test that no interacting pair fails, on the leading bits of the positions: with e_a the
@@ -91,6 +107,14 @@ struct FixedRule {
   std::vector<Error> errors{1};  // by law
   // Of the law that errs most.
   const Error& error() const { return *std::ranges::max_element(errors, {}, &Error::worst_force); }
+
+  bool cubic() const { return shape == kCube; }
+  CellEdges edges() const { return {cell_edge, shape}; }
+  // What brings a difference along an axis, or a relative velocity, to edges of the longest: kShapeFrac
+  // fractional bits.
+  int32_t shape_of(int axis) const {
+    return static_cast<int32_t>(std::lround(std::ldexp(shape[static_cast<size_t>(axis)], kShapeFrac)));
+  }
 };
 
 // kg: what the weight of a type means, and by that the masses that a run has.

@@ -11,6 +11,18 @@
 
 namespace cuboct {
 
+inline constexpr int kShapeFrac = 24;  // of FixedRule::shape_of
+
+// A number that counts edges of its own axis, in edges of the longest. Machines know cubes alone: their rules
+// have no shape.
+template <class Rule>
+CUBOCT_HD int32_t shaped_by(const Rule& rule, int axis, int32_t number) {
+  if constexpr (requires { rule.shape_of(axis); })
+    if (!rule.cubic())
+      return static_cast<int32_t>(round_odd(product(number, rule.shape_of(axis)), kShapeFrac));
+  return number;
+}
+
 // One pair's part of the kick, as PairResult holds it. x_i, x_j: visible positions, `x_j` in the frame of i's
 // cell.
 template <class Result, class Rule, class Triple>
@@ -22,7 +34,9 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
   // bits.
   int32_t d[3];
   for (int a = 0; a < 3; ++a) d[a] = static_cast<int32_t>(round_odd(x_j[a] - x_i[a], rule.difference_shift));
-  const auto r2 = static_cast<uint64_t>(product(d[0], d[0]) + product(d[1], d[1]) + product(d[2], d[2]));
+  int32_t e[3];
+  for (int a = 0; a < 3; ++a) e[a] = shaped_by(rule, a, d[a]);
+  const auto r2 = static_cast<uint64_t>(product(e[0], e[0]) + product(e[1], e[1]) + product(e[2], e[2]));
   if (r2 >= rule.cutoff2) return result;
   int32_t scale = 0;
   uint32_t first = 0;
@@ -45,7 +59,7 @@ CUBOCT_HD Result pair_kick_of(const Rule& rule, const Triple& x_i, const Triple&
         if (result.fault == FaultType::none) result.fault = FaultType::relative_velocity, result.number = w;
         w = wrap(w, w_bits);
       }
-      wd += product(static_cast<int32_t>(w), d[a]);
+      wd += product(shaped_by(rule, a, static_cast<int32_t>(w)), e[a]);
     }
     const int64_t q = round_odd(wd, rule.q_shift);
     s -= round_odd(table_value(rule.damp, r2) * q, rule.damp_shift);

@@ -42,15 +42,18 @@ class PairGraph {
   PairGraph(const FixedRule& rule, FixedProgram& program) : rule_(rule), program_(program) {}
 
   graph::Round made() {
-    std::vector<int> d;
-    for (int a = 0; a < program_.axes; ++a) d.push_back(difference(a));
+    std::vector<int> d, apart;
+    for (int a = 0; a < program_.axes; ++a) apart.push_back(difference(a));
+    for (int a = 0; a < program_.axes; ++a) d.push_back(shaped(b_, rule_, a, apart[static_cast<size_t>(a)]));
     const int r2 = b_.named(b_.dot(d, d), "r2");
     b_.counts(b_.named(b_.lt(r2, reach()), "when"));
     for (int& part : d) part = b_.within(part);
     const int s = b_.named(scaled(strength(b_.within(r2), d)), "s");
     graph::Sum force{"force", {}};
     for (int a = 0; a < program_.axes; ++a) {
-      const int kick = b_.neg(b_.mul(s, d[static_cast<size_t>(a)], rule_.kick_shift));
+      const int part =
+          rule_.cubic() ? d[static_cast<size_t>(a)] : within_reach(a, apart[static_cast<size_t>(a)]);
+      const int kick = b_.neg(b_.mul(s, part, rule_.kick_shift));
       force.terms.push_back(b_.named(kick, along("kick", a)));
     }
     const int when = b_.when();
@@ -60,6 +63,13 @@ class PairGraph {
  private:
   int difference(int axis) {
     return b_.named(b_.round(read_apart(b_, program_, axis), rule_.difference_shift), along("d", axis));
+  }
+
+  // Of a pair that counts the difference is the same: shaped it is below 2^D.
+  int within_reach(int axis, int along) {
+    const int64_t most =
+        (int64_t{1} << (rule_.widths.difference_frac + kShapeFrac)) / rule_.shape_of(axis) + 1;
+    return b_.clamp(along, {-most, most});
   }
 
   int pair_constant(const std::string& name, int frac, std::vector<int64_t> values) {
@@ -94,7 +104,8 @@ class PairGraph {
       const int other = read_velocity(b_, program_, Source::other_v, a);
       const int own = read_velocity(b_, program_, Source::own_v, a);
       const int apart = b_.round(b_.sub(other, own), rule_.w_shift);
-      w.push_back(b_.check(apart, rule_.widths.relative_velocity_bits, Fault::relative_velocity));
+      const int checked = b_.check(apart, rule_.widths.relative_velocity_bits, Fault::relative_velocity);
+      w.push_back(shaped(b_, rule_, a, checked));
       b_.named(w.back(), along("w", a));
     }
     return w;
@@ -166,6 +177,11 @@ class MotionGraph {
 };
 
 }  // namespace
+
+int shaped(Builder& builder, const FixedRule& rule, int axis, int node) {
+  if (rule.shape[static_cast<size_t>(axis)] == 1) return node;
+  return builder.mul(node, builder.constant(rule.shape_of(axis), kShapeFrac), kShapeFrac);
+}
 
 void add_motion(Builder& builder, FixedProgram& program, const FixedRule& rule,
                 const std::vector<int>& kicks) {

@@ -18,6 +18,9 @@ graph::FixedProgram pair_program(const FixedRule& rule, int capacity);
 // A program of this rule's formats and types for cells of so many particles, without fields and rounds.
 graph::FixedProgram begun_program(const std::string& name, const FixedRule& rule, int capacity);
 
+// A difference along an axis, or a relative velocity, in edges of the longest.
+int shaped(graph::Builder& builder, const FixedRule& rule, int axis, int node);
+
 // The last finish of any program: what kicks, constraints and gravity make of a particle's velocity, place
 // and displacement. `kicks`: nodes of `builder`, by axis, P+G fractional bits, of the lightest material.
 void add_motion(graph::Builder& builder, graph::FixedProgram& program, const FixedRule& rule,

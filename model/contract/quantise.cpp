@@ -318,15 +318,16 @@ FixedRule with_tables(const FixedRule& fixed, const Rule& rule, const TableChoic
 }
 
 // All but what the law brings.
-FixedRule framed(const Rule& rule, double cell_edge, const Widths& widths) {
-  const double cutoff = rule.cutoff();
-  if (cutoff > cell_edge * (1 + 1e-12))
+FixedRule framed(const Rule& rule, const CellEdges& edges, const Widths& widths) {
+  const double cutoff = rule.cutoff(), cell_edge = edges.longest;
+  if (cutoff > edges.shortest() * (1 + 1e-12))
     throw InputError(
-        fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, cell_edge));
+        fmt::format("the cutoff, {:.6g} m, is longer than a cell edge, {:.6g} m", cutoff, edges.shortest()));
   FixedRule fixed;
   fixed.widths = widths;
   fixed.widths.filter_frac = std::min(widths.filter_frac, widths.position_frac);
   fixed.cell_edge = cell_edge;
+  fixed.shape = edges.shape;
   fixed.dt = rule.dt;
   fixed.mass = rule.mass;
   fixed.damped = rule.damping.coefficient > 0;
@@ -349,7 +350,6 @@ FixedRule framed(const Rule& rule, double cell_edge, const Widths& widths) {
 void add_types(const Rule& rule, FixedRule& fixed) {
   const Widths& widths = fixed.widths;
   const int frac = widths.velocity_frac();
-  const double length = fixed.cell_edge;
   for (const ParticleType& type : rule.types) {
     FixedType t;
     const auto index = static_cast<int>(fixed.types.size());
@@ -358,7 +358,7 @@ void add_types(const Rule& rule, FixedRule& fixed) {
     t.imposed = type.imposed;
     t.pd = type.pd;
     for (int a = 0; a < 3; ++a) {
-      const double velocity = rule.dt / length, gravity = velocity * rule.dt;
+      const double velocity = rule.dt / fixed.edges()[a], gravity = velocity * rule.dt;
       const Quantity imposed{"an imposed velocity", type.velocity[a] * velocity,
                              type.velocity.norm() * velocity, 1, keys_of(type, "velocity")};
       t.velocity[a] = quantised(imposed, rule.dt, frac, widths.velocity_bits,
@@ -389,12 +389,12 @@ void add_types(const Rule& rule, FixedRule& fixed) {
 
 }  // namespace
 
-FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
+FixedRule quantise(const Rule& rule, const CellEdges& edges, const Widths& widths, const TableChoice& table,
                    double most_half_unit) {
   if (table.index_bits == 0) {
     TableChoice choice = table;
     for (choice.index_bits = kLeastIndex;; ++choice.index_bits) {
-      FixedRule fixed = quantise(rule, cell_edge, widths, choice, most_half_unit);
+      FixedRule fixed = quantise(rule, edges, widths, choice, most_half_unit);
       if (choice.index_bits == std::min(kMostIndex, 2 * widths.difference_frac - 1) ||
           std::isinf(most_half_unit))
         return fixed;
@@ -412,8 +412,8 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   }
   const TableChoice& choice = table;
   check_widths(widths, choice);
-  FixedRule fixed = framed(rule, cell_edge, widths);
-  const double cutoff = rule.cutoff();
+  FixedRule fixed = framed(rule, edges, widths);
+  const double cutoff = rule.cutoff(), cell_edge = edges.longest;
   const int D = widths.difference_frac;
 
   double scale = 0;
@@ -493,9 +493,9 @@ FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, con
   return fixed;
 }
 
-FixedRule quantise_without_law(const Rule& rule, double cell_edge, const Widths& widths) {
+FixedRule quantise_without_law(const Rule& rule, const CellEdges& edges, const Widths& widths) {
   check_widths(widths, {.index_bits = kLeastIndex});
-  FixedRule fixed = framed(rule, cell_edge, widths);
+  FixedRule fixed = framed(rule, edges, widths);
   add_types(rule, fixed);
   return fixed;
 }

@@ -32,12 +32,12 @@ struct TableChoice {
 //
 // Throws InputError, with numbers, where a format cannot hold the rule: cutoff beyond a cell edge, a negative
 // shift, a velocity, gain, scale or mass out of its width.
-FixedRule quantise(const Rule& rule, double cell_edge, const Widths& widths, const TableChoice& table,
+FixedRule quantise(const Rule& rule, const CellEdges& edges, const Widths& widths, const TableChoice& table,
                    double half_unit = std::numeric_limits<double>::infinity());
 
 // Its formats, types and motion alone: of a rule whose pair terms are a program. `cutoff2` is that of its
 // reach.
-FixedRule quantise_without_law(const Rule& rule, double cell_edge, const Widths& widths);
+FixedRule quantise_without_law(const Rule& rule, const CellEdges& edges, const Widths& widths);
 
 // The rule with the masses that the fixed one gives its particles.
 Rule with_masses_of(const FixedRule& fixed, Rule rule);

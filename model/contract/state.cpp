@@ -54,14 +54,12 @@ Int3 momentum(const FixedRule& rule, const std::vector<Int3>& by_type) {
 
 bool ExactBody::fits(const FixedRule& rule, const Vec3& rule_origin) const {
   return rule.widths.velocity_frac() == widths.velocity_frac() && rule.cell_edge == cell_edge &&
-         rule.dt == dt && rule_origin == origin;
+         rule.shape == shape && rule.dt == dt && rule_origin == origin;
 }
 
 Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, const Lattice& lattice,
                         const Vec3& origin) {
   const int frac = rule.widths.velocity_frac();
-  const double position_unit = std::ldexp(rule.cell_edge, -frac);
-  const double velocity_unit = position_unit / rule.dt;
   Particle p;
   p.id = id;
   p.type = body.type[id];
@@ -69,6 +67,7 @@ Particle fixed_particle(const Body& body, uint32_t id, const FixedRule& rule, co
   const ExactBody* exact = body.exact && body.exact->fits(rule, origin) ? body.exact.get() : nullptr;
   Cell cell;
   for (int a = 0; a < 3; ++a) {
+    const double position_unit = std::ldexp(rule.edges()[a], -frac), velocity_unit = position_unit / rule.dt;
     if (exact) {
       cell[a] = exact->cell[id][a];
       p.x[a] = exact->x[id][a];
@@ -112,15 +111,14 @@ Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, 
   body.v.resize(n);
   body.type.resize(n);
   if (rule.pd) body.u.resize(n);
-  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const Vec3 unit = position_units(rule);
   for (size_t k = 0; k < n; ++k) {
     const Particle& p = state.particles[k];
-    const Cell& cell = lattice.cell(p.cell);
     body.type[k] = p.type;
+    body.x[k] = position_of(rule, lattice, origin, p);
     for (int a = 0; a < 3; ++a) {
-      body.x[k][a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(p.x[a]) * unit;
-      body.v[k][a] = static_cast<double>(p.v[a]) * unit / rule.dt;
-      if (rule.pd) body.u[k][a] = static_cast<double>(p.u[a]) * unit;
+      body.v[k][a] = static_cast<double>(p.v[a]) * unit[a] / rule.dt;
+      if (rule.pd) body.u[k][a] = static_cast<double>(p.u[a]) * unit[a];
     }
   }
   return body;
@@ -128,21 +126,31 @@ Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, 
 
 Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin,
                  const Particle& particle) {
-  const double unit = std::ldexp(rule.cell_edge, -rule.widths.velocity_frac());
+  const CellEdges edges = rule.edges();
+  const Vec3 unit = position_units(rule);
   const Cell& cell = lattice.cell(particle.cell);
   Vec3 x;
   for (int a = 0; a < 3; ++a)
-    x[a] = origin[a] + cell[a] * rule.cell_edge + static_cast<double>(particle.x[a]) * unit;
+    x[a] = origin[a] + cell[a] * edges[a] + static_cast<double>(particle.x[a]) * unit[a];
   return x;
 }
 
-double velocity_unit(const FixedRule& rule) {
-  return std::ldexp(rule.cell_edge / rule.dt, -rule.widths.velocity_frac());
+Vec3 position_units(const FixedRule& rule) {
+  Vec3 units;
+  for (int a = 0; a < 3; ++a) units[a] = std::ldexp(rule.edges()[a], -rule.widths.velocity_frac());
+  return units;
+}
+
+Vec3 velocity_units(const FixedRule& rule) {
+  Vec3 units;
+  for (int a = 0; a < 3; ++a) units[a] = std::ldexp(rule.edges()[a] / rule.dt, -rule.widths.velocity_frac());
+  return units;
 }
 
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle) {
-  return velocity_unit(rule) * Vec3(static_cast<double>(particle.v[0]), static_cast<double>(particle.v[1]),
-                                    static_cast<double>(particle.v[2]));
+  return velocity_units(rule).cwiseProduct(Vec3(static_cast<double>(particle.v[0]),
+                                                static_cast<double>(particle.v[1]),
+                                                static_cast<double>(particle.v[2])));
 }
 
 }  // namespace cuboct

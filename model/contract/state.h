@@ -51,7 +51,8 @@ Int3 momentum(const FixedRule& rule, const std::vector<Int3>& by_type);
 // they are.
 struct ExactBody {
   Widths widths;
-  double cell_edge = 0;        // m
+  double cell_edge = 0;  // m, the longest
+  CellShape shape = kCube;
   double dt = 0;               // s
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   std::vector<Cell> cell;      // coordinates
@@ -73,8 +74,9 @@ Body to_real(const State& state, const FixedRule& rule, const Lattice& lattice, 
 // Position of a particle, m.
 Vec3 position_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const Particle& particle);
 
-// m/s of a velocity's least bit.
-double velocity_unit(const FixedRule& rule);
+// m of a position's least bit, and m/s of a velocity's, along each axis.
+Vec3 position_units(const FixedRule& rule);
+Vec3 velocity_units(const FixedRule& rule);
 
 // Velocity of a particle, m/s.
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle);

@@ -166,7 +166,8 @@ class Program {
   Scaled velocity(Builder& b, graph::Source source, uint32_t axis) const {
     if (static_cast<int>(axis) >= base_.axes) return Scaled::of(0);
     const int node = graph::read_velocity(b, out_.program, source, static_cast<int>(axis));
-    return Integers::scaled(node, base_.widths.velocity_frac(), base_.cell_edge / base_.dt);
+    return Integers::scaled(node, base_.widths.velocity_frac(),
+                            base_.edges()[static_cast<int>(axis)] / base_.dt);
   }
 
   // As the pair law has it: a difference that does not fit is a fault. `counts`: where it is one; -1:
@@ -178,7 +179,7 @@ class Program {
                             graph::read_velocity(b, out_.program, graph::Source::own_v, a));
     const int w = b.check(b.round(apart, base_.w_shift), base_.widths.relative_velocity_bits,
                           Fault::relative_velocity, counts);
-    return Integers::scaled(w, base_.widths.relative_velocity_frac, base_.cell_edge / base_.dt);
+    return Integers::scaled(w, base_.widths.relative_velocity_frac, base_.edges()[a] / base_.dt);
   }
 
   struct SumScale {
@@ -220,7 +221,8 @@ class Program {
     std::vector<int> d;
     const int64_t most = (int64_t{5} << base_.widths.difference_frac) / 4;
     for (int a = 0; a < base_.axes; ++a) {
-      d.push_back(b.named(b.round(read_apart(b, out_.program, a), base_.difference_shift), "d"));
+      const int apart = b.round(read_apart(b, out_.program, a), base_.difference_shift);
+      d.push_back(b.named(shaped(b, base_, a, apart), "d"));
       if (frame_) d.back() = b.clamp(d.back(), {-most, most});
     }
     return d;
@@ -355,17 +357,20 @@ class Program {
     }
   }
 
-  // The sums that become the force, or are added to it, count as velocities do: a term is one rounding away
-  // from a kick.
-  bool is_force(size_t k, size_t term) const {
-    if (rule_.still || k + 1 != rule_.rounds.size()) return false;
-    return std::ranges::any_of(rule_.rounds[k].made, [&](const ProgramWrite& write) {
-      if (write.number < rule_.force || write.number >= rule_.force + 3) return false;
-      return std::ranges::any_of(addends_of(rule_.rounds[k].finish, write.node), [&](const Addend& part) {
+  // The axis of the force that a sum becomes, or is added to. Such a sum counts as velocities do: a term is
+  // one rounding away from a kick.
+  std::optional<int> force_of(size_t k, size_t term) const {
+    if (rule_.still || k + 1 != rule_.rounds.size()) return std::nullopt;
+    for (const ProgramWrite& write : rule_.rounds[k].made) {
+      if (write.number < rule_.force || write.number >= rule_.force + 3) continue;
+      const bool adds = std::ranges::any_of(addends_of(rule_.rounds[k].finish, write.node), [&](const Addend&
+                                                                                                    part) {
         const RealNode& node = rule_.rounds[k].finish.at(part.node);
         return node.op == RealOp::input && node.input == RealInput{Source::sum, static_cast<uint32_t>(term)};
       });
-    });
+      if (adds) return static_cast<int>(write.number - rule_.force);
+    }
+    return std::nullopt;
   }
   // What a finish adds to a field as it is, but for a constant: the sum of its terms changes fields by what
   // it is to the last bit, so that nothing is lost where they are odd. The unit and the fraction of the
@@ -414,7 +419,7 @@ class Program {
       return std::nullopt;
     return at_one[id];
   }
-  double kick_unit() const { return base_.mass * base_.cell_edge / (base_.dt * base_.dt); }
+  double kick_unit(int axis) const { return base_.mass * base_.edges()[axis] / (base_.dt * base_.dt); }
 
   static std::vector<std::string> names_of_sums(const RuleRound& round) {
     std::vector<std::string> names;
@@ -432,11 +437,11 @@ class Program {
     for (size_t n = 0; n < from.terms.size(); ++n) {
       const Scaled when = counted(pair, bond, b, from.when[n], from.terms[n]);
       Scaled term;
-      if (is_force(k, n)) {
+      if (const std::optional<int> axis = force_of(k, n)) {
         const int frac = base_.widths.velocity_frac();
-        const Scaled value =
-            pair.integers().select(when, pair.value(from.terms[n], kick_unit()), Scaled::of(0));
-        term = Integers::scaled(pair.integers().node_in(value, kick_unit(), frac), frac, kick_unit());
+        const double unit = kick_unit(*axis);
+        const Scaled value = pair.integers().select(when, pair.value(from.terms[n], unit), Scaled::of(0));
+        term = Integers::scaled(pair.integers().node_in(value, unit, frac), frac, unit);
       } else if (const auto added = added_to_field(k, n)) {
         term = pair.integers().select(when, pair.value(from.terms[n], added->unit), Scaled::of(0));
         term = Integers::scaled(pair.integers().node_in(term, added->unit, added->frac), added->frac,
@@ -527,7 +532,7 @@ class Program {
       std::optional<int> kick;
       for (const Addend& part : addends_of(from.finish, write->node)) {
         int node =
-            finish.integers().node_in(finish.value(part.node), kick_unit(), base_.widths.velocity_frac());
+            finish.integers().node_in(finish.value(part.node), kick_unit(a), base_.widths.velocity_frac());
         if (part.minus) node = b.neg(node);
         kick = kick ? b.add(*kick, node) : node;
       }

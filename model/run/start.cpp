@@ -136,6 +136,8 @@ std::string start_text(const Scene& scene, const FixedRule* rule, const Vec3& or
     why = fmt::format("dt {:.6g} s there, {:.6g} s here", exact->dt, rule->dt);
   else if (exact->cell_edge != rule->cell_edge)
     why = fmt::format("cell edge {:.6g} m there, {:.6g} m here", exact->cell_edge, rule->cell_edge);
+  else if (exact->shape != rule->shape)
+    why = "cells of another shape";
   else if (exact->widths.velocity_frac() != rule->widths.velocity_frac())
     why = fmt::format("{} fractional bits there, {} here", exact->widths.velocity_frac(),
                       rule->widths.velocity_frac());

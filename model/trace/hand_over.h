@@ -126,7 +126,8 @@ void fields(HandOver<Bytes>& pass, BondState& bonds) {
 }
 template <typename Bytes>
 void fields(HandOver<Bytes>& pass, ExactBody& exact) {
-  pass(exact.widths, exact.cell_edge, exact.dt, exact.origin, exact.cell, exact.x, exact.v, exact.u);
+  pass(exact.widths, exact.cell_edge, exact.shape, exact.dt, exact.origin, exact.cell, exact.x, exact.v,
+       exact.u);
 }
 template <typename Bytes>
 void fields(HandOver<Bytes>& pass, Body& body) {

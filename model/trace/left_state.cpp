@@ -61,6 +61,12 @@ void read_fixed(const Reader& in, LeftState& left) {
   auto exact = std::make_shared<ExactBody>();
   exact->widths = widths_in(in);
   exact->cell_edge = in.number<double>(in.root(), "cell_edge");
+  if (in.has_attribute(in.root(), "cell_shape")) {
+    const Vec3 shape = vector_in(in, "cell_shape");
+    if (!(shape.minCoeff() > 0) || !(shape.maxCoeff() <= 1))
+      throw InputError(in.missing("three numbers above 0, at most 1,", "cell_shape"));
+    exact->shape = {shape[0], shape[1], shape[2]};
+  }
   exact->dt = in.number<double>(in.root(), "dt");
   exact->origin = vector_in(in, "origin");
   if (!(exact->cell_edge > 0) || !(exact->dt > 0) || !std::isfinite(exact->cell_edge) ||
@@ -90,12 +96,13 @@ void read_fixed(const Reader& in, LeftState& left) {
     for (const int64_t c : x)
       in.same_length(c >= 0 && c >> exact->widths.velocity_frac() == 0, "values and widths");
 
-  const double unit = std::ldexp(exact->cell_edge, -exact->widths.velocity_frac());
+  const CellEdges edges(exact->cell_edge, exact->shape);
   body.x.resize(count), body.v.resize(count), body.u.resize(count);
   for (size_t id = 0; id < count; ++id)
     for (size_t a = 0; a < 3; ++a) {
-      body.x[id][a] = exact->origin[a] + exact->cell[id][a] * exact->cell_edge +
-                      static_cast<double>(exact->x[id][a]) * unit;
+      const double edge = edges[static_cast<int>(a)], unit = std::ldexp(edge, -exact->widths.velocity_frac());
+      body.x[id][a] =
+          exact->origin[a] + exact->cell[id][a] * edge + static_cast<double>(exact->x[id][a]) * unit;
       body.v[id][a] = static_cast<double>(exact->v[id][a]) * unit / exact->dt;
       body.u[id][a] = static_cast<double>(exact->u[id][a]) * unit;
     }

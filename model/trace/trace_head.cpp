@@ -106,6 +106,8 @@ void write_head(const Writer& out, const TraceHead& head) {
   }
   if (!head.rule) return out.flush();
   out.number<double>(root, "cell_edge", head.rule->cell_edge);
+  if (const CellShape& shape = head.rule->shape; !head.rule->cubic())
+    out.numbers<double>(root, "cell_shape", {shape[0], shape[1], shape[2]});
   out.numbers<double>(root, "origin", triple(head.origin));
   write_widths(out, head.rule->widths);
   if (head.cells) write_lattice(out, *head.lattice);

@@ -94,6 +94,18 @@ TEST(GpuRounds, RandomCasesHaveGoldensBits) {
   EXPECT_LT(compared.golden_steps, compared.updates / 100);
 }
 
+TEST(GpuRounds, CellsThatAreNoCubesHaveGoldensBits) {
+  Compared compared;
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    const Case c = uneven_case(seed);
+    ASSERT_FALSE(c.setup.plan.rule.cubic());
+    compare_rounds(c, seed, compared);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(compared.updates, 100000u);
+  EXPECT_LT(compared.golden_steps, compared.updates / 100);
+}
+
 TEST(GpuRounds, FaultsAriseAsInGolden) {
   Compared compared;
   for (const Fault fault : all_faults()) compare_rounds(fault_case(fault), 3, compared);

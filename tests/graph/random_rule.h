@@ -60,6 +60,9 @@ inline FixedRule random_rule(uint64_t seed) {
   const int64_t whole = int64_t{1} << (2 * w.difference_frac);
   rule.cutoff2 = static_cast<uint64_t>(whole / dice.draw(1, 6));
   rule.axes = dice.chance(30) ? 2 : 3;
+  // Drawn apart, so that the other rules stay what they were.
+  if (Dice shapes(seed + 1000); shapes.chance(30))
+    for (double& share : rule.shape) share = shapes.chance(30) ? 1 : 0.75 + 0.01 * shapes.draw(0, 24);
   rule.damped = dice.chance(60), rule.scaled = dice.chance(60);
   rule.weighted = dice.chance(40), rule.pd = dice.chance(40);
   const int types = dice.draw(1, 3), laws = rule.scaled ? dice.draw(1, 3) : 1;

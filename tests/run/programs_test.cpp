@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "hw/engine/scene_engine.h"
+#include "model/base/output.h"
+#include "model/config/changes.h"
 #include "tests/run/kinds.h"
 
 namespace cuboct::test {
@@ -237,6 +240,62 @@ TEST_P(TextPrograms, OfTwoRoundsRestAndNoCheckFailsAsleep) {
   if (GetParam().name != "gpu") {
     EXPECT_GT(counter(*other, "quiet_node_steps"), 100) << counter_text(*other);
   }
+}
+
+// A scene of scenes/rules in a box of so many crystal cells.
+Bed uneven_bed(const std::string& name, const std::string& cells) {
+  Bed bed;
+  const std::string path = CUBOCT_SOURCE_DIR "/scenes/rules/" + name;
+  bed.scene = parse_scene(with_changes(read_text(path), path, {{"box.cells", cells}}), path);
+  bed.plan = program_plan_of(bed.scene, {});
+  bed.one_thread.engine.threads = 1;
+  bed.two_threads.engine.threads = 2;
+  return bed;
+}
+const std::vector<std::string> kBoxes = {"copper.toml", "dpd.toml", "langevin.toml"};
+
+TEST_P(TextPrograms, CellsThatAreNoCubes) {
+  for (const std::string& name : kBoxes) {
+    SCOPED_TRACE(name);
+    const Bed bed = uneven_bed(name, "[5, 7, 6]");
+    ASSERT_FALSE(bed.plan.rule.cubic());
+    const auto golden = this->golden(bed), other = engine(bed);
+    const Ran expected = run(*golden, 12), found = run(*other, 12);
+    EXPECT_EQ(expected.fault, "");
+    EXPECT_EQ(found.hashes, expected.hashes);
+  }
+  const Bed bed = text_bed(
+      "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nrun = { dt = \"0.2 us\", steps = 9 }\n"
+      "[box]\nperiodic = \"xyz\"\ncells = [5, 4, 6]\n[[velocity]]\nuniform = \"[300, 30, 100] m/s\"\nregion "
+      "= "
+      "{ shape = \"half_space\", point = \"[0, 0, 4.3] mm\", normal = \"z\" }\n"
+      "[rule]\nbonds = \"reference\"\nreach = \"1.5 * pitch\"\n" +
+      kCut);
+  ASSERT_FALSE(bed.plan.rule.cubic());
+  const auto golden = this->golden(bed), other = engine(bed);
+  const Ran expected = run(*golden, 40), found = run(*other, 40);
+  EXPECT_EQ(expected.fault, "");
+  EXPECT_EQ(found.hashes, expected.hashes);
+}
+
+// As in the cubes of embedded_atoms_integer_test.cpp, by the same third derivative.
+TEST(UnevenTexts, MoveAsInDoublesAndKeepMomentum) {
+  const Bed bed = uneven_bed("copper.toml", "[5, 4, 6]");
+  ASSERT_FALSE(bed.plan.rule.cubic());
+  const auto golden = golden_kind(bed.scene, bed.plan).make(nullptr, false);
+  const auto doubles = scene_reference(bed.scene, bed.scene.body, {}, bed.scene.rule.cutoff());
+  const Momentum before = golden->momentum();
+  golden->advance(50, nullptr), doubles->advance(50, nullptr);
+  EXPECT_EQ(golden->momentum().fixed, before.fixed);
+  const auto here = std::get<RealFrame>(golden->frame(false)).x,
+             there = std::get<RealFrame>(doubles->frame(false)).x;
+  double moved = 0, off = 0;
+  for (size_t i = 0; i < here.size(); ++i) {
+    moved = std::max(moved, nearest_image(here[i] - bed.scene.body.x[i], bed.scene.periodic).norm());
+    off = std::max(off, nearest_image(here[i] - there[i], bed.scene.periodic).norm());
+  }
+  EXPECT_GT(moved, 0.2e-10);
+  EXPECT_LT(off, 2e-14);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, TextPrograms, testing::ValuesIn(program_kinds()),

@@ -392,6 +392,31 @@ Case random_recipe(uint64_t seed, bool flat) {
 
 Case random_case(uint64_t seed) { return random_recipe(seed, false); }
 
+Case uneven_case(uint64_t seed) {
+  Dice dice(seed);
+  Features f;
+  f.seed = seed;
+  f.size = {5, 4, 6};
+  std::rotate(f.size.begin(), f.size.begin() + dice.draw(0, 2), f.size.end());
+  f.jitter = 0.01 * dice.draw(0, 8);
+  f.speed = 0.02 * dice.draw(0, 20);
+  f.damping = dice.chance(50) ? 0.05 * dice.draw(1, 4) : 0;
+  f.two_materials = dice.chance(60);
+  f.contact = dice.chance(40), f.masses = dice.chance(40), f.laws = dice.chance(40);
+  f.force_held = dice.chance(30);
+  Scene scene = block_scene(f);
+  for (int a = 0; a < 3; ++a) {
+    scene.periodic.origin[a] = -0.3;
+    scene.periodic.extent[a] = f.size[static_cast<size_t>(a)] * std::sqrt(2.0);
+  }
+  Arch arch;
+  arch.capacity = 60;
+  arch.table.degree = dice.draw(1, 2);
+  Plan plan = plan_of(scene, arch, Cells::any);
+  State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+  return {"uneven_" + std::to_string(seed), {std::move(plan), std::move(initial)}, 20, std::move(scene)};
+}
+
 Case random_flat_case(uint64_t seed) { return random_recipe(seed, true); }
 
 Case with_narrow_memories(Case c) {

@@ -56,7 +56,7 @@ class FixedEngine final : public Engine {
                static_cast<double>(Policy::whole(rule.widths, found.x, found.residue, a)) * position;
       reading.x.push_back(x);
       reading.force.push_back(force_of(rule, {found.kick.at[0], found.kick.at[1], found.kick.at[2]}));
-      reading.v.push_back(velocity_unit(rule) * Vec3(found.v[0], found.v[1], found.v[2]));
+      reading.v.push_back(velocity_units(rule).cwiseProduct(Vec3(found.v[0], found.v[1], found.v[2])));
     }
     if (energies) {
       const Sums sums = machine_->read_energies();

@@ -133,11 +133,13 @@ class RoundsEngine final : public IntegerEngine {
     cells_.capacity = static_cast<uint32_t>(plan_.arch.capacity);
   }
 
-  // Of a difference half a unit along three axes, for both of a pair.
+  // Of a difference half a unit along three axes, for both of a pair. Lists take cells as cubes: the reach of
+  // an axis whose edge is shorter counts more of these.
   static double reach_of(const Plan& plan) {
     const int frac = plan.rule.widths.difference_frac;
-    return std::sqrt(std::ldexp(static_cast<double>(plan.rule.cutoff2), -2 * frac)) +
-           2 * std::ldexp(1.0, -frac);
+    return (std::sqrt(std::ldexp(static_cast<double>(plan.rule.cutoff2), -2 * frac)) +
+            2 * std::ldexp(1.0, -frac)) *
+           plan.rule.cell_edge / plan.rule.edges().shortest();
   }
   static constexpr int kLeastBins = 3;  // of a ring: fewer would meet a particle from both sides
   static double largest_skin(const Plan& plan, double reach) {
