@@ -129,7 +129,7 @@ TEST(UnevenCells, MachinesRefuseThem) {
   const Scene scene = warm_block(1.6, 1e-3);
   EXPECT_EQ(
       refused_with([&] { plan_of(scene, {}); }),
-      "block: no cell edge of at least 1.6 m divides the periodic box 7.07107 x 5.65685 x 8.48528 m into 3 "
+      "no cell edge of at least 1.6 m divides the periodic box 7.07107 x 5.65685 x 8.48528 m into 3 "
       "or more cells per axis\n  hint: use a larger box, or one whose sides have a common part; engines "
       "golden and lattice need no such part");
   Scene small = warm_block(1.6, 1e-3);

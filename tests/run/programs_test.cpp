@@ -242,22 +242,25 @@ TEST_P(TextPrograms, OfTwoRoundsRestAndNoCheckFailsAsleep) {
   }
 }
 
-// A scene of scenes/rules in a box of so many crystal cells.
-Bed uneven_bed(const std::string& name, const std::string& cells) {
+// A scene of scenes/rules in another box.
+Bed uneven_bed(const std::string& name, const std::vector<Change>& changes) {
   Bed bed;
   const std::string path = CUBOCT_SOURCE_DIR "/scenes/rules/" + name;
-  bed.scene = parse_scene(with_changes(read_text(path), path, {{"box.cells", cells}}), path);
+  bed.scene = parse_scene(with_changes(read_text(path), path, changes), path);
   bed.plan = program_plan_of(bed.scene, {});
   bed.one_thread.engine.threads = 1;
   bed.two_threads.engine.threads = 2;
   return bed;
 }
-const std::vector<std::string> kBoxes = {"copper.toml", "dpd.toml", "langevin.toml"};
+const std::vector<std::pair<std::string, std::vector<Change>>> kUneven = {
+    {"copper.toml", {{"box.cells", "[5, 7, 6]"}}},
+    {"dpd.toml", {{"box.cells", "[7, 5, 8]"}, {"packing.pitch", "0.5"}}},
+    {"langevin.toml", {{"box.cells", "[6, 5, 7]"}}}};
 
 TEST_P(TextPrograms, CellsThatAreNoCubes) {
-  for (const std::string& name : kBoxes) {
+  for (const auto& [name, changes] : kUneven) {
     SCOPED_TRACE(name);
-    const Bed bed = uneven_bed(name, "[5, 7, 6]");
+    const Bed bed = uneven_bed(name, changes);
     ASSERT_FALSE(bed.plan.rule.cubic());
     const auto golden = this->golden(bed), other = engine(bed);
     const Ran expected = run(*golden, 12), found = run(*other, 12);
@@ -270,7 +273,8 @@ TEST_P(TextPrograms, CellsThatAreNoCubes) {
       "= "
       "{ shape = \"half_space\", point = \"[0, 0, 4.3] mm\", normal = \"z\" }\n"
       "[rule]\nbonds = \"reference\"\nreach = \"1.5 * pitch\"\n" +
-      kCut);
+          kCut,
+      40);
   ASSERT_FALSE(bed.plan.rule.cubic());
   const auto golden = this->golden(bed), other = engine(bed);
   const Ran expected = run(*golden, 40), found = run(*other, 40);
@@ -280,10 +284,10 @@ TEST_P(TextPrograms, CellsThatAreNoCubes) {
 
 // As in the cubes of embedded_atoms_integer_test.cpp, by the same third derivative.
 TEST(UnevenTexts, MoveAsInDoublesAndKeepMomentum) {
-  const Bed bed = uneven_bed("copper.toml", "[5, 4, 6]");
+  const Bed bed = uneven_bed("copper.toml", {{"box.cells", "[5, 4, 6]"}});
   ASSERT_FALSE(bed.plan.rule.cubic());
   const auto golden = golden_kind(bed.scene, bed.plan).make(nullptr, false);
-  const auto doubles = scene_reference(bed.scene, bed.scene.body, {}, bed.scene.rule.cutoff());
+  const auto doubles = scene_reference(bed.scene, bed.scene.body, {}, bed.scene.rule.cutoff(), 0, {});
   const Momentum before = golden->momentum();
   golden->advance(50, nullptr), doubles->advance(50, nullptr);
   EXPECT_EQ(golden->momentum().fixed, before.fixed);
