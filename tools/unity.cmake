@@ -13,7 +13,7 @@ function(cuboct_unity directory)
     get_target_property(chosen ${target} UNITY_BUILD)
     get_target_property(sources ${target} SOURCES)
     list(LENGTH sources files)
-    if(NOT type MATCHES "^(STATIC_LIBRARY|MODULE_LIBRARY|EXECUTABLE)$" OR NOT chosen STREQUAL "chosen-NOTFOUND" OR files LESS 2)
+    if(NOT type MATCHES "^(STATIC_LIBRARY|OBJECT_LIBRARY|MODULE_LIBRARY|EXECUTABLE)$" OR NOT chosen STREQUAL "chosen-NOTFOUND" OR files LESS 2)
       continue()
     endif()
     # A class of a file may have members of types that the file has for itself: GCC takes the file for a header.
