@@ -166,10 +166,12 @@ py::dict check(const Sources& sources) {
   out["dt"] = scene.rule.dt;
   out["dt_limit"] = scene.dt_limit > 0 ? py::cast(scene.dt_limit) : py::none();
   out["steps"] = scene.steps;
-  const bool machine = scene.rule.rounds == nullptr && plan.rule.cubic();
+  const bool machine = scene.rule.rounds == nullptr;
   out["cells"] = machine ? py::cast(plan.lattice.size()) : py::none();
   out["cell_edge"] = plan.rule.cell_edge;
-  out["nodes"] = machine ? py::cast(plan.nodes()) : py::none();
+  const CellEdges edges = plan.rule.edges();
+  out["cell_edges"] = py::make_tuple(edges[0], edges[1], edges[2]);
+  out["nodes"] = machine && plan.rule.cubic() ? py::cast(plan.nodes()) : py::none();
   out["plan_hash"] = hex(plan.hash);
   std::vector<std::string> warnings = motion_warnings(scene);
   warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());

@@ -76,6 +76,10 @@ TEST(Ranks, HoldGoldensBitsOfPrograms) {
     compare(as_program(random_case(seed)), {2, seed % 3 != 0, "", world, kCuts[seed % 4]}, count);
     if (HasFatalFailure()) return;
   }
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    compare(uneven_case(seed), {1, seed % 2 == 0, "", world, kCuts[seed % 4]}, count);
+    if (HasFatalFailure()) return;
+  }
   for (const Fault fault : {Fault::sum, Fault::velocity}) {
     compare(as_program(fault_case(fault)), {1, true, "", world, "bricks"}, count);
     if (HasFatalFailure()) return;

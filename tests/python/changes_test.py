@@ -75,6 +75,30 @@ class Changes(unittest.TestCase):
             # 100 steps of 10 us at 10 m/s^2.
             np.testing.assert_allclose(simulation.velocities[:, 2] - speed, -0.01, rtol=2e-3)
 
+    def test_a_box_that_no_cube_divides(self):
+        scene = cuboct.Scene(
+            {
+                "units": "reduced",
+                "mass": 1.0,
+                "packing": {"pitch": 1.1},
+                "law": {"kind": "lj", "epsilon": 1.0, "sigma": 1.0, "cutoff": 2.5},
+                "box": {"cells": [6, 5, 8], "periodic": "xyz"},
+                "velocity": [{"thermal_energy": 0.5, "seed": 1}],
+                "run": {"dt": 0.004, "steps": 10},
+            }
+        )
+        facts = scene.check()
+        np.testing.assert_allclose(facts["cell_edges"], 1.1 * 2**0.5 * np.array([6 / 3, 5 / 3, 8 / 4]))
+        self.assertEqual(facts["cell_edge"], max(facts["cell_edges"]))
+        self.assertEqual(facts["cells"], 36)
+        self.assertIsNone(facts["nodes"])
+        golden, lattice = (cuboct.Simulation(scene, engine) for engine in ("golden", "lattice"))
+        golden.run(), lattice.run()
+        self.assertEqual(golden.hash, lattice.hash)
+        self.assertGreater(np.abs(golden.positions - cuboct.Simulation(scene, "golden").positions).max(), 0.01)
+        with self.assertRaisesRegex(cuboct.InputError, "no cell edge of at least 2.5 m divides the periodic box"):
+            cuboct.Simulation(scene, "systemc")
+
     def test_beyond_the_cells_of_the_start(self):
         """Two particles, moved 1 mm along x, then 5 mm along y: five cells."""
         scene = {
