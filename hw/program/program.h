@@ -30,6 +30,7 @@ struct ProgramAbilities {
   bool forces = false;          // --forces
   bool checkpoints = false;     // --checkpoint, --checkpoint-every, --resume
   bool text = false;            // rules that are text
+  bool real_text = false;       // those in real numbers, as the options say: no integers need hold them
   uint64_t steps = UINT64_MAX;  // that a machine can count
 };
 
