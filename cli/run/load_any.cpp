@@ -9,9 +9,9 @@
 
 namespace cuboct {
 
-Loaded load_any(const Input& input, const std::string& engine) {
+Loaded load_any(const Input& input, const std::string& engine, bool real) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
-  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch), engine);
+  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch), engine, real);
   return loaded;
 }
 

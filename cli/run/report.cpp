@@ -359,8 +359,8 @@ void write_report(const std::string& directory, const std::string& out) {
   Input input{record.scene, record.arch};
   input.stage = record.stage;
   input.from = record.from;
-  const Loaded loaded = load_any(input, record.engine);
   const Trace trace = guarded_trace(directory + "/trace.h5");
+  const Loaded loaded = load_any(input, record.engine, trace.state_hash.empty());
   const Plan& plan = loaded.setup.plan;
   if (trace.plan_hash != plan.hash)
     throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",

@@ -169,13 +169,14 @@ bool GpuProgram::prepare(ProgramOptions& options) {
     throw InputError("--forces goes without --checkpoint", "a checkpoint's frames hold no forces");
   choice_.arithmetic = arithmetic_of(precision_);
   choice_.interpret = rule_code_ == "interpreted";
+  if (choice_.interpret && precision_ != "fixed")
+    throw InputError("--rule-code interpreted goes with --precision fixed",
+                     "a rule of text in real numbers is compiled for the device");
+  abilities.real_text = precision_ != "fixed";
   return false;
 }
 
 EngineKind GpuProgram::kind(Scene& scene, const Plan& plan, const ProgramOptions&) {
-  if (plan.program != nullptr && precision_ != "fixed")
-    throw InputError(fmt::format("--precision {}: a rule of text runs in integers on a GPU", precision_),
-                     "engine reference has it in doubles");
   if (joules_) {
     meter_.emplace(found_, plan.particles);
     choice_.hooks = meter_->hooks();

@@ -8,8 +8,10 @@
 
 #include "emu/gpu/rounds/nvrtc.h"
 #include "emu/gpu/rounds/rounds_engine.h"
+#include "emu/gpu/text_run.h"
 #include "hw/engine/engine_kind.h"
 #include "model/base/resources.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -271,6 +273,12 @@ EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choic
   if (plan.program != nullptr) {
     kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) {
       return run_of_text(scene, plan, choice, from);
+    };
+    return kind;
+  }
+  if (scene.rule.rounds != nullptr) {
+    kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) {
+      return TextRun::make(scene, plan.rule.cell_edge, choice, from);
     };
     return kind;
   }

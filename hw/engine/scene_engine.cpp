@@ -41,8 +41,8 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
   with_places(scene, arch, [&] { refuse_rounds(scene.rule, who); });
 }
 
-Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine) {
-  if (runs_text(scene, engine)) return program_plan_of(scene, arch);
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine, bool real) {
+  if (!real && runs_text(scene, engine)) return program_plan_of(scene, arch);
   if (scene.rule.rounds != nullptr) return real_plan_of(scene, arch);
   const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
   const bool doubles = row != nullptr && row->here == Here::reference;

@@ -21,8 +21,9 @@ std::string engine_for(const Scene& scene);
 void check_runs(const Scene& scene, const Arch& arch, const std::string& engine);
 
 // plan_of, or what stands for a plan (hw/plan/real_plan.h): of rules of several rounds, and of rules of pairs
-// that no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene).
-Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "");
+// that no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene). `real`:
+// the engine is to compute in real numbers, so that a rule of text needs no integers.
+Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "", bool real = false);
 // The same for several engines that hold the same bits: each must run the scene.
 Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines);
 // Those that a crosscheck compares where nobody names any.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "hw/plan/real_plan.h"
 #include "hw/plan/setup.h"
 #include "hw/program/command_line.h"
 #include "hw/program/error_file.h"
@@ -85,7 +86,9 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   const RoundsRule* rounds = scene.rule.rounds.get();
   const bool text = program.abilities.text && rounds != nullptr && rounds->text() != nullptr;
   const Cells cells = program.abilities.any_cells ? Cells::any : Cells::cubes;
-  const Plan plan = text ? program_plan_of(scene, arch) : plan_of(scene, arch, cells);
+  const Plan plan = !text                         ? plan_of(scene, arch, cells)
+                    : program.abilities.real_text ? real_plan_of(scene, arch)
+                                                  : program_plan_of(scene, arch);
   settle(program, parsed, scene);
 
   std::optional<TraceWriter> writer;

@@ -31,6 +31,7 @@ struct ProgramAbilities {
   bool checkpoints = false;     // --checkpoint, --checkpoint-every, --resume
   bool text = false;            // rules that are text
   bool any_cells = false;       // a pair law in cells that are no cubes
+  bool real_text = false;       // those in real numbers, as the options say: no integers need hold them
   uint64_t steps = UINT64_MAX;  // that a machine can count
 };
 

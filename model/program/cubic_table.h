@@ -33,6 +33,9 @@ class CubicTable final : public TableCurve {
   }
   double end() const override { return step_ * static_cast<double>(bins()); }
   double step() const { return step_; }
+  size_t bins() const { return cubics_.size() / 4; }
+  // Between values `bin` and `bin + 1`: of powers 0 to 3 of the steps from the first of both.
+  const double* cubic(size_t bin) const { return cubics_.data() + 4 * bin; }
   const std::string& what() const override { return what_; }
   bool bounded() const override { return bounded_; }
   std::pair<double, double> range(bool of_slope) const override;
@@ -42,7 +45,6 @@ class CubicTable final : public TableCurve {
     const double* c;  // of its cubic
     double p;         // steps from its begin
   };
-  size_t bins() const { return cubics_.size() / 4; }
   Place place(double x) const {
     const double steps = x * per_step_;
     // Not a number: the last.
