@@ -96,7 +96,7 @@ class GpuProgram : public EngineProgram {
   GpuProgram() {
     name = "cuboct-gpu";
     description = "Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers";
-    abilities.forces = abilities.checkpoints = abilities.text = true;
+    abilities.forces = abilities.checkpoints = abilities.text = abilities.any_cells = true;
   }
 
   void add_options(Command& app) override {

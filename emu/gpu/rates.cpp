@@ -4,7 +4,6 @@
 #include <chrono>
 
 #include "emu/gpu/run.h"
-#include "hw/engine/engine_kind.h"
 #include "model/base/interrupt.h"
 
 namespace cuboct::gpu {
@@ -21,21 +20,13 @@ double seconds_of(auto&& engine, uint64_t steps) {
 }  // namespace
 
 std::vector<double> step_rates(const Scene& scene, const Plan& plan, const RateRequest& request) {
-  const bool fixed = request.arithmetic == Arithmetic::fixed;
-  const State initial = fixed ? to_fixed(scene.body, plan.rule, plan.lattice, plan.origin) : State();
-  const auto rounds = [&](const State& state) {
-    return make_rounds_engine(plan, state, request.engine, rounds_compiler(request.interpret));
-  };
-  const auto seconds_of_a_run = [&] {
-    if (plan.program != nullptr) return seconds_of(integer_run(scene, plan, nullptr, rounds), request.steps);
-    if (fixed) return seconds_of(make_fixed_engine(scene, plan, initial, request.engine), request.steps);
-    return seconds_of(make_real_engine(scene, scene.body, request.arithmetic, request.engine), request.steps);
-  };
+  const GpuChoice choice{request.arithmetic, request.engine, {}, request.interpret};
+  const EngineKind kind = gpu_kind(scene, plan, choice);
   std::vector<double> rates;
   for (int repeat = -1; repeat < request.repeats; ++repeat) {
     double seconds = 0, steps = 0;
     while (seconds < request.seconds) {
-      seconds += seconds_of_a_run();
+      seconds += seconds_of(kind.make(nullptr, false), request.steps);
       if (interrupted()) return rates;
       steps += static_cast<double>(request.steps);
     }

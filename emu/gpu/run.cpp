@@ -11,7 +11,10 @@
 #include "emu/gpu/text_run.h"
 #include "hw/engine/engine_kind.h"
 #include "model/base/resources.h"
+#include "model/contract/pair_program.h"
+#include "model/program/integer_program.h"
 #include "model/rules/rounds_rule.h"
+#include "model/run/state_engine.h"
 
 namespace cuboct::gpu {
 namespace {
@@ -241,6 +244,40 @@ class TextRunner : public IntegerEngine {
   mutable Notes notes_;
 };
 
+Plan with_pair_program(Plan plan) {
+  auto program = std::make_shared<IntegerProgram>();
+  program->program = pair_program(plan.rule, plan.arch.capacity);
+  plan.program = std::move(program);
+  return plan;
+}
+
+// A pair law in cells that are no cubes, which its program knows.
+class PairProgramRun : public StateEngine {
+ public:
+  PairProgramRun(const Scene& scene, const Plan& plan, const GpuChoice& choice, CheckpointReader* from)
+      : StateEngine(setting_of(scene, plan)),
+        plan_(with_pair_program(plan)),
+        engine_(make_rounds_engine(plan_, begin_of(scene, plan, from), choice.engine,
+                                   rounds_compiler(choice.interpret)),
+                choice.hooks) {
+    if (choice.hooks.ready) choice.hooks.ready();
+  }
+
+  uint64_t step_count() const override { return engine_.step_count(); }
+  void advance(uint64_t steps, std::vector<uint64_t>* hashes) override { engine_.advance(steps, hashes); }
+  uint64_t hash() override { return engine_.hash(); }
+  cuboct::Counters counters() override { return engine_.counters(); }
+  Notes notes() override { return engine_.notes(); }
+  void for_each_slot(const std::function<void(const Particle&)>& see) override { engine_.for_each_slot(see); }
+
+ protected:
+  State make_state() override { return engine_.state(); }
+
+ private:
+  const Plan plan_;
+  TextRunner engine_;
+};
+
 std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan, const GpuChoice& choice,
                                             CheckpointReader* from) {
   auto run = integer_run(scene, plan, from, [&](const State& state) {
@@ -282,7 +319,9 @@ EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choic
     };
     return kind;
   }
-  kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) {
+  kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) -> std::unique_ptr<cuboct::Engine> {
+    if (choice.arithmetic == Arithmetic::fixed && !plan.rule.cubic())
+      return std::make_unique<PairProgramRun>(scene, plan, choice, from);
     return std::make_unique<Runner>(scene, plan, choice, from);
   };
   return kind;

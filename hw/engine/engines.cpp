@@ -53,6 +53,7 @@ const std::vector<EngineRow>& engines() {
        .cost = {0, 0, false, 600, 0, 70}},
       {.name = "gpu",
        .text = true,
+       .any_cells = true,
        .real = true,
        .studied = true,
        .devices = true,

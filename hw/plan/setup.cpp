@@ -70,8 +70,8 @@ CellEdges periodic_edges(const Scene& scene, double least, Cells cells) {
           least, extent[0], extent[1], extent[2]),
       cells == Cells::any
           ? fmt::format("use a larger box: {:.6g} m or more along each periodic axis", 3 * least)
-          : "use a larger box, or one whose sides have a common part; engines golden and lattice need no "
-            "such part");
+          : "use a larger box, or one whose sides have a common part; engines golden, lattice and "
+            "gpu need no such part");
 }
 
 // Whether nothing happens along z: all particles share one height, none moves, is pulled or driven off it,

@@ -30,7 +30,7 @@ struct Setup {
 // machine cannot hold the scene: a cell too full, a particle too fast, ...
 Setup make_setup(const Scene& scene, const Arch& arch);
 
-// Nodes of a machine have cubic cells. In a periodic box that no cube divides golden and the lattice engine
+// Nodes of a machine have cubic cells. In a periodic box that no cube divides other engines
 // take cells with an edge of its own along each axis.
 enum class Cells : uint8_t { cubes, any };
 

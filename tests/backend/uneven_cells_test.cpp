@@ -131,7 +131,7 @@ TEST(UnevenCells, MachinesRefuseThem) {
       refused_with([&] { plan_of(scene, {}); }),
       "no cell edge of at least 1.6 m divides the periodic box 7.07107 x 5.65685 x 8.48528 m into 3 "
       "or more cells per axis\n  hint: use a larger box, or one whose sides have a common part; engines "
-      "golden and lattice need no such part");
+      "golden, lattice and gpu need no such part");
   Scene small = warm_block(1.6, 1e-3);
   small.periodic.extent[1] = 4.5;
   EXPECT_NE(refused_with([&] { plan_of(small, {}, Cells::any); }).find("hint: use a larger box"),

@@ -282,6 +282,29 @@ TEST_P(TextPrograms, CellsThatAreNoCubes) {
   EXPECT_EQ(found.hashes, expected.hashes);
 }
 
+// A pair law is a program there.
+TEST_P(TextPrograms, PairLawsInCellsThatAreNoCubes) {
+  Bed bed;
+  bed.scene = parse_scene(
+      "units = \"reduced\"\nmass = 1\npacking = { pitch = 1.1 }\nlaw = { kind = \"lj\", epsilon = 1, sigma = "
+      "1, "
+      "cutoff = 2.5 }\ndamping = { ratio = 0.02 }\nbox = { cells = [6, 5, 8], periodic = \"xyz\" }\n"
+      "velocity = [ { thermal_energy = 1.5, seed = 2 } ]\nrun = { dt = 0.004, steps = 20, energy_every = 10 "
+      "}\n",
+      "lj.toml");
+  bed.plan = plan_of(bed.scene, {}, Cells::any);
+  bed.one_thread.engine.threads = 1, bed.two_threads.engine.threads = 2;
+  ASSERT_FALSE(bed.plan.rule.cubic());
+  RunRequest request;
+  request.steps = 20, request.energy_steps = {0, 10, 20}, request.energies = true, request.hash_every = 1;
+  const Trace golden = record(bed.scene, golden_kind(bed.scene, bed.plan), request).trace,
+              other = record(bed.scene, GetParam().make(bed, request), request).trace;
+  EXPECT_EQ(golden.state_hash.size(), 21u);
+  EXPECT_EQ(other.state_hash, golden.state_hash);
+  ASSERT_EQ(other.curves.size(), golden.curves.size());
+  for (size_t k = 0; k < golden.curves.size(); ++k) EXPECT_EQ(other.curves[k].value, golden.curves[k].value);
+}
+
 // As in the cubes of embedded_atoms_integer_test.cpp, by the same third derivative.
 TEST(UnevenTexts, MoveAsInDoublesAndKeepMomentum) {
   const Bed bed = uneven_bed("copper.toml", {{"box.cells", "[5, 4, 6]"}});
