@@ -44,7 +44,8 @@ class PairGraph {
   graph::Round made() {
     std::vector<int> d, apart;
     for (int a = 0; a < program_.axes; ++a) apart.push_back(difference(a));
-    for (int a = 0; a < program_.axes; ++a) d.push_back(shaped(b_, rule_, a, apart[static_cast<size_t>(a)]));
+    for (int a = 0; a < program_.axes; ++a)
+      d.push_back(shaped_difference(b_, rule_, a, apart[static_cast<size_t>(a)]));
     const int r2 = b_.named(b_.dot(d, d), "r2");
     b_.counts(b_.named(b_.lt(r2, reach()), "when"));
     for (int& part : d) part = b_.within(part);
@@ -181,6 +182,12 @@ class MotionGraph {
 int shaped(Builder& builder, const FixedRule& rule, int axis, int node) {
   if (rule.shape[static_cast<size_t>(axis)] == 1) return node;
   return builder.mul(node, builder.constant(rule.shape_of(axis), kShapeFrac), kShapeFrac);
+}
+
+int shaped_difference(Builder& builder, const FixedRule& rule, int axis, int node) {
+  if (rule.cubic()) return node;
+  const int64_t most = (int64_t{5} << rule.widths.difference_frac) / 4;
+  return builder.clamp(shaped(builder, rule, axis, node), {-most, most});
 }
 
 void add_motion(Builder& builder, FixedProgram& program, const FixedRule& rule,

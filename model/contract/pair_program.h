@@ -18,8 +18,10 @@ graph::FixedProgram pair_program(const FixedRule& rule, int capacity);
 // A program of this rule's formats and types for cells of so many particles, without fields and rounds.
 graph::FixedProgram begun_program(const std::string& name, const FixedRule& rule, int capacity);
 
-// A difference along an axis, or a relative velocity, in edges of the longest.
+// A relative velocity along an axis in edges of the longest, and a difference. Beyond the cutoff the latter
+// is cut off at 5/4 of an edge, so that doubles hold r2 whatever D is.
 int shaped(graph::Builder& builder, const FixedRule& rule, int axis, int node);
+int shaped_difference(graph::Builder& builder, const FixedRule& rule, int axis, int node);
 
 // The last finish of any program: what kicks, constraints and gravity make of a particle's velocity, place
 // and displacement. `kicks`: nodes of `builder`, by axis, P+G fractional bits, of the lightest material.

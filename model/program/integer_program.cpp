@@ -222,8 +222,8 @@ class Program {
     const int64_t most = (int64_t{5} << base_.widths.difference_frac) / 4;
     for (int a = 0; a < base_.axes; ++a) {
       const int apart = b.round(read_apart(b, out_.program, a), base_.difference_shift);
-      d.push_back(b.named(shaped(b, base_, a, apart), "d"));
-      if (frame_) d.back() = b.clamp(d.back(), {-most, most});
+      d.push_back(b.named(shaped_difference(b, base_, a, apart), "d"));
+      if (frame_ && base_.cubic()) d.back() = b.clamp(d.back(), {-most, most});
     }
     return d;
   }
