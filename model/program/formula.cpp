@@ -22,19 +22,13 @@ struct Function {
   const char* use;
 };
 constexpr Function kFunctions[] = {
-    {"sqrt", 1, "sqrt(a)"},
-    {"exp", 1, "exp(a)"},
-    {"log", 1, "log(a)"},
-    {"sin", 1, "sin(a)"},
-    {"cos", 1, "cos(a)"},
-    {"abs", 1, "abs(a)"},
-    {"norm", 1, "norm(v)"},
-    {"dot", 2, "dot(v, w)"},
-    {"noise", 1, "noise(seed)"},
-    {"noises", 1, "noises(seed)"},
-    {"min", 2, "min(a, b)"},
-    {"max", 2, "max(a, b)"},
-    {"select", 3, "select(truth, a, b)"},
+    {"sqrt", 1, "sqrt(a)"},        {"exp", 1, "exp(a)"},
+    {"log", 1, "log(a)"},          {"sin", 1, "sin(a)"},
+    {"cos", 1, "cos(a)"},          {"erfc", 1, "erfc(a)"},
+    {"abs", 1, "abs(a)"},          {"norm", 1, "norm(v)"},
+    {"dot", 2, "dot(v, w)"},       {"noise", 1, "noise(seed)"},
+    {"noises", 1, "noises(seed)"}, {"min", 2, "min(a, b)"},
+    {"max", 2, "max(a, b)"},       {"select", 3, "select(truth, a, b)"},
 };
 
 const char* kind_text(Kind kind) {
@@ -283,7 +277,8 @@ class Compiler {
     const RealOp op = name == "exp"   ? RealOp::exponential
                       : name == "log" ? RealOp::logarithm
                       : name == "sin" ? RealOp::sine
-                                      : RealOp::cosine;
+                      : name == "cos" ? RealOp::cosine
+                                      : RealOp::error_function;
     return number(graph_.add(op, plain(e.of[0], angle).node[0]), {});
   }
   Value root(const Expression& e) {

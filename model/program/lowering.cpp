@@ -190,7 +190,8 @@ Scaled Lowering::fixed_product(const std::vector<Factor>& factors) {
 Scaled Lowering::of_one(const RealNode& node, const Scaled& a) {
   if (!a.constant() && b_.range(a.node).low < 0)
     refuse_rule(
-        "a root, a power, a quotient, exp, log, sin or cos of what may be negative is not in integers yet");
+        "a root, a power, a quotient, exp, log, sin, cos or erfc of what may be negative is not in integers "
+        "yet");
   const double exponent = node.op == RealOp::power ? graph_.at(node.of[1]).value : 0;
   const auto f = [&](double x) {
     return node.op == RealOp::divide ? 1 / x : applied(node.op, x, exponent, 0);

@@ -33,6 +33,7 @@ int arity(RealOp op) {
     case RealOp::logarithm:
     case RealOp::sine:
     case RealOp::cosine:
+    case RealOp::error_function:
     case RealOp::absolute:
     case RealOp::inverse:
     case RealOp::curve:

@@ -29,7 +29,8 @@ enum class RealOp : uint8_t {
   logarithm,
   sine,
   cosine,
-  power,  // of a constant exponent
+  error_function,  // erfc, what is left of 1
+  power,           // of a constant exponent
   absolute,
   least,
   most,
@@ -105,6 +106,8 @@ inline double applied(RealOp op, double a, double b, double c) {
       return std::sin(a);
     case RealOp::cosine:
       return std::cos(a);
+    case RealOp::error_function:
+      return std::erfc(a);
     case RealOp::power:
       return std::pow(a, b);
     case RealOp::absolute:

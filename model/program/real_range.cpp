@@ -107,6 +107,8 @@ RealRange range_of_parts(const RealNode& node, const RealRange& a, const RealRan
       return range_of_wave(std::sin, a);
     case RealOp::cosine:
       return range_of_wave(std::cos, a);
+    case RealOp::error_function:
+      return nearly_between(std::erfc(a.high), std::erfc(a.low));
     case RealOp::power: {
       if (a.low < 0 || !b.point()) return RealRange::whole();
       const auto [low, high] = std::minmax({std::pow(a.low, b.low), std::pow(a.high, b.low)});

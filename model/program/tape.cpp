@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "model/program/real_block.h"
 
@@ -44,6 +45,8 @@ Slope sloped(const RealNode& node, const Slope& a, const Slope& b, const Slope& 
       return {at, std::cos(a.at) * a.by};
     case RealOp::cosine:
       return {at, -std::sin(a.at) * a.by};
+    case RealOp::error_function:
+      return {at, -2 * std::numbers::inv_sqrtpi * std::exp(-a.at * a.at) * a.by};
     case RealOp::power:  // the exponent is a constant
       return {at, b.at * std::pow(a.at, b.at - 1) * a.by};
     case RealOp::absolute:

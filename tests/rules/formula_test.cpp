@@ -67,6 +67,7 @@ TEST(Formula, MeansWhatItSays) {
   EXPECT_EQ(number_of("min(3, max(1, 2)) + abs(-4)"), 6);
   EXPECT_EQ(number_of("sqrt(dot(d, d))"), 13);
   EXPECT_DOUBLE_EQ(number_of("log(exp(1.5)) + sin(0) + cos(0)"), 2.5);
+  EXPECT_DOUBLE_EQ(number_of("erfc(1)"), 0.15729920705028513);  // Abramowitz and Stegun, table 7.1
   EXPECT_EQ(compiled("k * d").numbers, (std::vector<double>{6, 8, 24}));
   EXPECT_EQ(compiled("[1, 0, 2] - [0, 1, 0]").numbers, (std::vector<double>{1, -1, 2}));
   EXPECT_EQ(compiled("k * d").value.dimension, quantity::force.dimension);

@@ -125,6 +125,27 @@ TEST(PairText, MovesTheReferenceAsTheLawDoes) {
     EXPECT_LT((of_law.body().x[i] - of_text.body().x[i]).norm(), 1e-22) << i;
 }
 
+// What a charge feels of another whose far field is screened: D. Wolf, P. Keblinski, S. R. Phillpot and J.
+// Eggebrecht, J. Chem. Phys. 110 (1999) 8254, equation 4.4. An [energy] of another slope would be refused.
+TEST(PairText, KnowsTheErrorFunctionAndItsSlope) {
+  const Scene scene = scene_of(
+      "[rule]\nname = \"screened\"\nreach = \"8 angstrom\"\ncore = \"2 angstrom\"\n"
+      "parameters = { charges = \"14.4 eV*angstrom\", screen = \"0.2 1/angstrom\" }\n"
+      "round = [ { sum.force = \"-charges * (erfc(screen * r) / r^2 + 2 * screen / sqrt(pi) * exp(-(screen * "
+      "r)^2) / r) * "
+      "(d / r)\" } ]\nenergy.pair = \"charges * erfc(screen * r) / r\"\n",
+      "5 angstrom");
+  const PairLaw& law = *scene.rule.law;
+  const double angstrom = 1e-10, charges = 14.4 * 1.602176634e-19 * angstrom, screen = 0.2 / angstrom;
+  const auto energy = [&](double r) { return charges * std::erfc(screen * r) / r; };
+  for (double r = 2.1 * angstrom; r < 7.9 * angstrom; r += 0.1 * angstrom) {
+    const double h = 1e-4 * angstrom, force = (energy(r - h) - energy(r + h)) / (2 * h);
+    EXPECT_NEAR(law.force(r), force, 1e-7 * force) << r;
+    const double slope = (law.force(r + h) - law.force(r - h)) / (2 * h);
+    EXPECT_NEAR(law.slope(r), slope, 1e-7 * std::abs(slope)) << r;
+  }
+}
+
 TEST(PairText, IsALawOfAPairOfMaterials) {
   const Scene scene = read_scene(kScenes + "rules/pair.toml");
   ASSERT_EQ(scene.rule.laws(), 3U);
