@@ -45,7 +45,9 @@ double reach_of(const FixedRule& rule) {
   const double cutoff =
       std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)), -rule.widths.difference_frac);
   if (rule.cubic()) return cutoff;
-  const double rounded = std::ldexp(2.0, -rule.widths.difference_frac);
+  // A difference is rounded twice along each axis, by half a unit each, and its share of the longest edge by
+  // less: 2.2 units in all.
+  const double rounded = std::ldexp(3.0, -rule.widths.difference_frac);
   return (cutoff + rounded) * rule.cell_edge / rule.edges().shortest();
 }
 

@@ -56,7 +56,7 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
 
 Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines) {
   for (const std::string& engine : engines) check_runs(scene, arch, engine);
-  // The one that takes the fewest cells.
+  // An engine that takes cubes alone decides for all.
   const auto cubes = std::ranges::find_if(engines, [](const std::string& engine) {
     const EngineRow* row = find_engine(engine);
     return row != nullptr && row->bits && !row->any_cells;

@@ -31,7 +31,7 @@ struct Setup {
 Setup make_setup(const Scene& scene, const Arch& arch);
 
 // Nodes of a machine have cubic cells. In a periodic box that no cube divides other engines
-// take cells with an edge of its own along each axis.
+// take cells whose edge differs by axis.
 enum class Cells : uint8_t { cubes, any };
 
 // A cell's edges, m: the law's cutoff or the arch's, in a box that repeats the next length that divides it.

@@ -29,9 +29,9 @@ NearPairs::NearPairs(const FixedRule& rule, const Lattice& lattice, int threads)
       threads_(threads),
       unit_(std::ldexp(rule.cell_edge, -rule.widths.velocity_frac())),
       shape_(rule.shape) {
-  // Forces see rounded differences.
+  // Forces see rounded differences of places that are cut off.
   const int D = rule.widths.difference_frac;
-  cutoff_ = std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)) + 2, -D);
+  cutoff_ = std::ldexp(std::sqrt(static_cast<double>(rule.cutoff2)) + 3, -D);
   for (size_t a = 0; a < 3; ++a) period_[a] = int64_t{lattice.period()[a]} << frac_;
 }
 

@@ -18,7 +18,7 @@ Mat3 virial_stress(const FixedRule& rule, const Lattice& lattice, const State& s
                    const std::vector<Int3>& kicks, const NearPairs& near,
                    const std::vector<PairAcross>& across);
 
-// `unit`: velocity_unit of the rule.
+// `unit`: velocity_units of the rule.
 Vec3 velocity_of(const FixedRule& rule, const Particle& particle, const Int3& kick, const Vec3& unit);
 
 // What is asked of single particles.

@@ -54,7 +54,7 @@ struct CellEdges {
   double longest = 0;  // m
   CellShape shape = kCube;
 
-  CellEdges(double edge) : longest(edge) {}
+  CellEdges(double edge) : longest(edge) {}  // of a cube, where an edge is all that is said
   CellEdges(double edge, const CellShape& of) : longest(edge), shape(of) {}
   double operator[](int axis) const { return longest * shape[static_cast<size_t>(axis)]; }
   double shortest() const { return longest * *std::ranges::min_element(shape); }
@@ -70,7 +70,7 @@ struct FixedRule {
   uint64_t cutoff2 = 0;  // 2D fractional bits; r2 >= cutoff2: no interaction
   // Adder-only test that no interacting pair fails, on the leading bits of the positions: with e_a the
   // difference of floor(x_a / 2^(P-B)) and size_a = e_a, or -e_a - 1 where e_a < 0, each size <= [0], each
-  // sum of two <= [1], the sum of all <= [2]. B fractional bits. See set_planar.
+  // sum of two <= [1], the sum of all <= [2]. B fractional bits. See set_planar. Of cubes alone.
   std::array<int64_t, 3> planar{};
 
   FixedTable force;  // of each law f(r)/r * dt^2/m, times the largest pair scale

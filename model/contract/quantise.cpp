@@ -341,6 +341,12 @@ FixedRule framed(const Rule& rule, const CellEdges& edges, const Widths& widths)
                     cell_edge),
         "a smaller cell_edge, or more bits of difference_frac")
         .about({"node.cell_edge", "widths.difference_frac"});
+  // Two that are a whole edge or more apart along an axis do not interact, as each side's rounding has it:
+  // only neighbouring cells meet.
+  for (int a = 0; a < 3; ++a) {
+    const auto edge = static_cast<uint64_t>(shaped_by(fixed, a, int32_t{1} << D));
+    fixed.cutoff2 = std::min(fixed.cutoff2, edge * edge);
+  }
   set_planar(fixed);
   fixed.difference_shift = widths.position_frac - D;
   fixed.w_shift = widths.velocity_frac() - widths.relative_velocity_frac;

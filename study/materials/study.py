@@ -55,8 +55,9 @@ class Case:
                     yield step * head["dt"], np.arange(len(positions)), positions
                 return
             frames, first = trace["frames"], trace["frames/first"]
-            unit = head["cell_edge"] / 2.0 ** (head["position_frac"] + head["guard"])
-            corner = head["origin"] + trace["lattice/cell"][:] * head["cell_edge"]
+            edge = head["cell_edge"] * head.get("cell_shape", 1)
+            unit = edge / 2.0 ** (head["position_frac"] + head["guard"])
+            corner = head["origin"] + trace["lattice/cell"][:] * edge
             for k, step in enumerate(frames["step"]):
                 rows = slice(first[k], first[k + 1])
                 yield step * head["dt"], frames["id"][rows], corner[frames["node"][rows]] + frames["x"][rows] * unit

@@ -185,7 +185,7 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
     return {TrialVerdict::refused, parts_of(error).message};
   }
   const FixedRule& rule = plan->rule;
-  const Judge judge(std::ldexp(seed / rule.cell_edge, rule.widths.velocity_frac()), resolution);
+  const Judge judge(std::ldexp(seed / rule.edges().shortest(), rule.widths.velocity_frac()), resolution);
   emu::LatticeChoice choice;
   choice.engine.threads = method.threads;
   return watch(*emu::lattice_kind(scene, *plan, choice).make(nullptr, false), scene.body, judge, steps);

@@ -168,7 +168,7 @@ void measure(const Study& study, const Truth& truth, const Truth& own, Outcome& 
       return static_cast<int>(table.c0.size() + table.c1.size() + table.c2.size()) *
              plan->rule.widths.strength_bits;
     };
-    if (plan->program == nullptr) {
+    if (plan->program == nullptr && plan->rule.cubic()) {
       outcome.halo_bits = plan->words.halo_bits;
       outcome.table_bits = bits(plan->rule.force) + (plan->rule.damped ? bits(plan->rule.damp) : 0);
     }

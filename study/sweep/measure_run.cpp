@@ -85,12 +85,12 @@ Run run_real(const Scene& scene, const Settings& settings, const RunRequest& req
 
 // `before`: of the start.
 void add_momenta(const Scene& scene, const FixedRule& rule, const Int3& before, const State& last, Run& run) {
-  const double unit = scene.rule.mass * rule.cell_edge / rule.dt / std::exp2(rule.widths.velocity_frac());
+  const Vec3 unit = scene.rule.mass * velocity_units(rule);
   const Int3 after = momentum(rule, last);
-  for (int a = 0; a < 3; ++a) run.momentum_change[a] = unit * static_cast<double>(after[a] - before[a]);
+  for (int a = 0; a < 3; ++a) run.momentum_change[a] = unit[a] * static_cast<double>(after[a] - before[a]);
   for (const Particle& p : last.particles) {
     Vec3 v;
-    for (int a = 0; a < 3; ++a) v[a] = unit * static_cast<double>(p.v[a]);
+    for (int a = 0; a < 3; ++a) v[a] = unit[a] * static_cast<double>(p.v[a]);
     run.momentum_scale += scene.rule.relative_mass(p.type) * v.norm();
   }
 }
@@ -140,7 +140,7 @@ Run run_on_gpu(const Case& c, const Scene& scene, const RunRequest& request, uin
   if (c.settings.arithmetic == Arithmetic::fixed) {
     Scene started = scene;
     started.body = started_body(scene, true);
-    const Plan plan = plan_of(started, c.arch);
+    const Plan plan = shared_plan_of(started, c.arch, {"gpu"});
     if (trace.plan_hash != plan.hash)
       throw std::runtime_error("cuboct-gpu made another plan of the same scene: build both from one source");
     for (const State& state : trace.frames)

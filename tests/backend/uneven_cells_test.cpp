@@ -8,6 +8,7 @@
 #include "hw/plan/setup.h"
 #include "model/analysis/measure.h"
 #include "model/contract/golden.h"
+#include "model/contract/law_function.h"
 #include "model/real/reference.h"
 #include "tests/backend/against_golden.h"
 #include "tests/support/block.h"
@@ -134,8 +135,35 @@ TEST(UnevenCells, MachinesRefuseThem) {
       "golden, lattice and gpu need no such part");
   Scene small = warm_block(1.6, 1e-3);
   small.periodic.extent[1] = 4.5;
-  EXPECT_NE(refused_with([&] { plan_of(small, {}, Cells::any); }).find("hint: use a larger box"),
-            std::string::npos);
+  EXPECT_EQ(refused_with([&] { plan_of(small, {}, Cells::any); }),
+            "no cell edge of at least 1.6 m divides the periodic box 7.07107 x 4.5 x 8.48528 m into 3 or "
+            "more cells "
+            "per axis\n  hint: use a larger box: 4.8 m or more along each periodic axis");
+}
+
+// Two that stand just a cell apart, in cells as long as the cutoff along x, with a law that ends with a
+// force: golden looks into neighbouring cells alone.
+TEST(UnevenCells, NobodyMeetsBeyondANeighbouringCell) {
+  Count count;
+  Scene scene = block_scene({.size = {1, 1, 1}, .jitter = 0, .speed = 0});
+  scene.rule.law = hermite_law("ends with a force", Hermite({1, 2.5}, {3, 1}, {-1, -1}), 0.5);
+  scene.body = {};
+  scene.body.type = {0, 0}, scene.body.v = {Vec3::Zero(), Vec3::Zero()};
+  scene.periodic.extent = Vec3(7.5, 8, 9);
+  // The first in the last unit of its cell, the second in one of the first units of the cell after the next.
+  const double unit = 2.5 * std::ldexp(1.0, -20);
+  for (int at = -3; at < 20; ++at) {
+    scene.body.x = {Vec3(2.5 - unit, 4, 4.5), Vec3(5 + at * unit, 4, 4.5)};
+    Arch arch;
+    arch.widths.difference_frac = 16, arch.widths.position_frac = 20;
+    Plan plan = plan_of(scene, arch, Cells::any);
+    ASSERT_FALSE(plan.rule.cubic());
+    ASSERT_EQ(plan.rule.edges()[0], 2.5);
+    State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
+    const Case c{"two", {std::move(plan), std::move(initial)}, 3};
+    compare(c, {.threads = 1, .simd = {}}, count);
+    if (HasFatalFailure()) return;
+  }
 }
 
 // Where a cube divides the box cells are cubes, as on machines.

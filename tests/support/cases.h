@@ -24,8 +24,7 @@ Case make_case(const std::string& name);
 
 // Features, sizes and initial state drawn from `seed`.
 Case random_case(uint64_t seed);
-// A periodic box that no cube divides, of 5 x 4 x 6 crystal cells in any order: each axis has an edge of its
-// own.
+// A periodic box that no cube divides, of 5 x 4 x 6 crystal cells in any order.
 Case uneven_case(uint64_t seed);
 // The same without a third axis.
 Case random_flat_case(uint64_t seed);

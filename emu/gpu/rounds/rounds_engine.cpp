@@ -133,12 +133,13 @@ class RoundsEngine final : public IntegerEngine {
     cells_.capacity = static_cast<uint32_t>(plan_.arch.capacity);
   }
 
-  // Of a difference half a unit along three axes, for both of a pair. Lists take cells as cubes: the reach of
-  // an axis whose edge is shorter counts more of these.
+  // A difference is rounded along three axes by half a unit, or, where cells are no cubes, by one and the
+  // rounding of their shape. Lists take cells as cubes: the reach of an axis whose edge is shorter counts
+  // more of these.
   static double reach_of(const Plan& plan) {
     const int frac = plan.rule.widths.difference_frac;
     return (std::sqrt(std::ldexp(static_cast<double>(plan.rule.cutoff2), -2 * frac)) +
-            2 * std::ldexp(1.0, -frac)) *
+            3 * std::ldexp(1.0, -frac)) *
            plan.rule.cell_edge / plan.rule.edges().shortest();
   }
   static constexpr int kLeastBins = 3;  // of a ring: fewer would meet a particle from both sides
@@ -630,7 +631,11 @@ class RoundsEngine final : public IntegerEngine {
 std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan& plan, const State& initial,
                                                   const Options& options, const CompileRounds& compile) {
   if (options.devices.size() > 1)
-    throw InputError("a rule of text runs on one GPU", "--gpus 1").about({"rule.file", "rule"});
+    throw InputError(
+        "what runs as a program runs on one GPU: a rule of text, and a pair law in a box that no cube "
+        "divides",
+        "--gpus 1")
+        .about({"rule.file", "rule"});
   return std::make_unique<RoundsEngine>(plan, initial, options, compile);
 }
 
