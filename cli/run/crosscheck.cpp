@@ -323,7 +323,9 @@ void add_crosscheck(Command& app, int& exit_code) {
   options->choice.add_machines(command);
   command
       .option("--engines", options->engines,
-              "which ones; default: golden,lattice,systemc,rtl, of a rule of text golden,lattice")
+              "which ones; default: golden,lattice,systemc,rtl; golden,lattice of a rule of text, or in a "
+              "box that no "
+              "cube divides")
       .delimiter(',')
       .type_name("A,B,...");
   command

@@ -59,6 +59,11 @@ class Runner : public cuboct::Engine {
   uint64_t builds_before_ = 0, golden_before_ = 0;  // of the runs before this one, up to the checkpoint
 };
 
+[[noreturn]] void refuse_another(const CheckpointReader& from) {
+  throw InputError(fmt::format("{} was made with another engine or --precision", from.path()),
+                   "resume with the options of the run that wrote it");
+}
+
 void Runner::begin_fixed(CheckpointReader* from) {
   const State initial = begin_of(scene_, plan_, from);
   momentum_.fixed = cuboct::momentum(plan_.rule, initial);
@@ -84,8 +89,7 @@ Runner::Runner(const Scene& scene, const Plan& plan, const GpuChoice& choice, Ch
     const EngineMemory& kept = from->head().engine;
     if (kept.own.empty() != fixed() ||
         (!fixed() && kept.counters[2] != static_cast<uint64_t>(choice.arithmetic)))
-      throw InputError(fmt::format("{} was made with another engine or --precision", from->path()),
-                       "resume with the options of the run that wrote it");
+      refuse_another(*from);
     builds_before_ = kept.counters[0], golden_before_ = kept.counters[1];
   }
   fixed() ? begin_fixed(from) : begin_real(from);
@@ -320,8 +324,9 @@ EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choic
     return kind;
   }
   kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) -> std::unique_ptr<cuboct::Engine> {
-    if (choice.arithmetic == Arithmetic::fixed && !plan.rule.cubic())
-      return std::make_unique<PairProgramRun>(scene, plan, choice, from);
+    const bool program = choice.arithmetic == Arithmetic::fixed && !plan.rule.cubic();
+    if (program && from && !from->head().engine.own.empty()) refuse_another(*from);
+    if (program) return std::make_unique<PairProgramRun>(scene, plan, choice, from);
     return std::make_unique<Runner>(scene, plan, choice, from);
   };
   return kind;
