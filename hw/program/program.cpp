@@ -85,7 +85,7 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   const bool leads = program.leads();
   const RoundsRule* rounds = scene.rule.rounds.get();
   const bool text = program.abilities.text && rounds != nullptr && rounds->text() != nullptr;
-  const Plan plan = !text                        ? plan_of(scene, arch)
+  const Plan plan = !text                         ? plan_of(scene, arch)
                     : program.abilities.real_text ? real_plan_of(scene, arch)
                                                   : program_plan_of(scene, arch);
   settle(program, parsed, scene);

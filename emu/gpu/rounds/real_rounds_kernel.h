@@ -3,9 +3,9 @@
 // its finish, and in the last round the step. The rule's graphs are text that is compiled while the engine
 // runs (real_rounds_text.h). For that this file includes no header of the host's library.
 //
-// A value of the rule stands as itself times a power of two, its exponent, which the text knows: SI numbers of
-// atoms, and products of them, are beyond what a float holds. Lengths, velocities and masses have exponents,
-// too. Only what is read back is in SI.
+// A value of the rule stands as itself times a power of two, its exponent, which the text knows: SI numbers
+// of atoms, and products of them, are beyond what a float holds. Lengths, velocities and masses have
+// exponents, too. Only what is read back is in SI.
 #pragma once
 
 #ifdef CUBOCT_ROUNDS_ALONE
@@ -58,9 +58,9 @@ struct alignas(16) RealFour<double> {
 template <class Real>
 struct RealKind {
   Real mass, element;
-  Real kick;         // a force's velocity
-  Real gravity[3];   // velocity of a step
-  Real velocity[3];  // imposed, or that of the anchor
+  Real kick;                  // a force's velocity
+  Real gravity[3];            // velocity of a step
+  Real velocity[3];           // imposed, or that of the anchor
   Real spring, drag, follow;  // of who is held by force: kp, kd, and what a velocity adds to u in a step
   uint32_t imposed;           // bit per axis
   uint32_t held;              // by force
@@ -112,11 +112,11 @@ struct RealFrame {
 
   const RealFour<Real>* tables;
   const RealKind<Real>* types;
-  Real unit[3];      // length of a unit of a place's difference
+  Real unit[3];               // length of a unit of a place's difference
   Real x_unit[3], origin[3];  // of x, where the rule reads it
-  Real drift[3];     // units of x that a velocity adds in a step
-  Real furthest[3];  // units of x that a step may move
-  int64_t bound[3];  // of x, on both sides of 0
+  Real drift[3];              // units of x that a velocity adds in a step
+  Real furthest[3];           // units of x that a step may move
+  int64_t bound[3];           // of x, on both sides of 0
   RealRing ring[3];
   Real* force[3];  // null: a step is made; else the state is only looked at, and here is its force
   bool first;
@@ -153,7 +153,8 @@ struct RealPair {
 // A function of equal steps from 0 on (model/program/cubic_table.h), of an argument in steps: four powers.
 template <class Real>
 CUBOCT_DEVICE inline RealFour<Real> cubic_of(const RealFour<Real>* cubics, int bins, Real steps, Real& part) {
-  const int bin = steps < static_cast<Real>(bins - 1) ? static_cast<int>(steps > 0 ? steps : Real(0)) : bins - 1;
+  const int bin =
+      steps < static_cast<Real>(bins - 1) ? static_cast<int>(steps > 0 ? steps : Real(0)) : bins - 1;
   part = steps - static_cast<Real>(bin);
   if (part > 1) part = 1;
   return cubics[bin];
@@ -296,7 +297,8 @@ struct RealStep {
     for (int a = 0; a < 3; ++a) {
       Real f = force[a];
       if (type.held != 0) f -= type.spring * at.u[a][i] + type.drag * (v.at[a] - type.velocity[a]);
-      v.at[a] = (type.imposed >> a & 1u) != 0 ? type.velocity[a] : v.at[a] + (f * type.kick + type.gravity[a]);
+      v.at[a] =
+          (type.imposed >> a & 1u) != 0 ? type.velocity[a] : v.at[a] + (f * type.kick + type.gravity[a]);
       if (at.to_u[0] != nullptr)
         at.to_u[a][i] = at.u[a][i] + (type.held != 0 ? (v.at[a] - type.velocity[a]) * type.follow : Real(0));
       const Real drift = v.at[a] * at.drift[a];
@@ -319,15 +321,15 @@ struct RealStep {
 }  // namespace cuboct::gpu
 
 #ifdef __CUDACC__
-#define CUBOCT_REAL_ROUND(name, Graphs)                                                     \
-  extern "C" __global__ void __launch_bounds__(256)                                         \
-      name(uint32_t count, const __grid_constant__ Graphs::Frame frame) {                   \
-    const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;                               \
-    if (i < count) cuboct::gpu::RealStep<Graphs>{frame}(i);                                 \
+#define CUBOCT_REAL_ROUND(name, Graphs)                                   \
+  extern "C" __global__ void __launch_bounds__(256)                       \
+      name(uint32_t count, const __grid_constant__ Graphs::Frame frame) { \
+    const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;             \
+    if (i < count) cuboct::gpu::RealStep<Graphs>{frame}(i);               \
   }
 #else
-#define CUBOCT_REAL_ROUND(name, Graphs)                                                     \
-  extern "C" void name(uint32_t count, const Graphs::Frame& frame) {                        \
-    for (uint32_t i = 0; i < count; ++i) cuboct::gpu::RealStep<Graphs>{frame}(i);           \
+#define CUBOCT_REAL_ROUND(name, Graphs)                                           \
+  extern "C" void name(uint32_t count, const Graphs::Frame& frame) {              \
+    for (uint32_t i = 0; i < count; ++i) cuboct::gpu::RealStep<Graphs>{frame}(i); \
   }
 #endif

@@ -195,8 +195,9 @@ class Printer {
           fmt::format("{} * {}", value(node.of[0]), literal(1 / cubics->step(), -exponent));
       const std::string text = fmt::format("cubic_{}(at.tables + {}, {}, {})", slope ? "slope" : "value",
                                            place.first, place.count, steps);
-      return slope ? fmt::format("{} * {}", text, literal(1 / cubics->step(), -argument_exponent(*node.table)))
-                   : text;
+      return slope
+                 ? fmt::format("{} * {}", text, literal(1 / cubics->step(), -argument_exponent(*node.table)))
+                 : text;
     }
     return fmt::format("piece_value(at.tables + {}, {}, {}, {})", place.first, place.count,
                        value(node.of[0], argument_exponent(*node.table)), slope);
@@ -295,7 +296,8 @@ class Rounds {
         if (const double most = largest(values[field.first + k]); most > 0)
           exponents.back() = exponent_of(most);
         else if (field.range)
-          exponents.back() = exponent_of(std::max(std::abs(field.range->first), std::abs(field.range->second)));
+          exponents.back() =
+              exponent_of(std::max(std::abs(field.range->first), std::abs(field.range->second)));
       }
     return exponents;
   }
@@ -401,7 +403,8 @@ class Rounds {
     const bool last = k + 1 == program_.rounds.size();
     if (round.terms.size() > kMostNumbers || program_.particle_numbers > kMostNumbers ||
         program_.bond_numbers > kMostBondNumbers)
-      refuse(fmt::format("round '{}' has more numbers than a thread of the gpu engine has room for", round.name));
+      refuse(fmt::format("round '{}' has more numbers than a thread of the gpu engine has room for",
+                         round.name));
     const std::string pair = pair_text(round), finish = finish_text(round, last);
     return fmt::format(
         "struct Round{} {{\n"
@@ -410,8 +413,8 @@ class Rounds {
         "static constexpr int kSums = {}, kOfKind = {};\n"
         "{}{}}};\n",
         k, program_.declaration.bonds == BondRange::reference, last && !program_.still,
-        std::max<size_t>(round.terms.size(), 1), text_.kinds.back().empty() ? 0 : text_.kinds.back()[0].size(),
-        pair, finish);
+        std::max<size_t>(round.terms.size(), 1),
+        text_.kinds.back().empty() ? 0 : text_.kinds.back()[0].size(), pair, finish);
   }
 
   std::string pair_text(const ProgramRound& round) {
@@ -419,17 +422,18 @@ class Rounds {
     outputs.insert(outputs.end(), round.when.begin(), round.when.end());
     for (const ProgramWrite& write : round.bonds) outputs.push_back(write.node);
     const std::vector<std::vector<double>> of_kinds = values_of_kinds(round.pair);
-    const ScaledGraph graph =
-        scaled(round.pair, outputs,
-               {[this](const RealInput& i) { return constant(i); }, [this](const RealInput& i) { return scope(i); },
-                [this](const RealInput& i) { return exponent(i); },
-                [&](NodeId id) { return exponent_of(largest(of_kinds[id])); }});
+    const ScaledGraph graph = scaled(
+        round.pair, outputs,
+        {[this](const RealInput& i) { return constant(i); }, [this](const RealInput& i) { return scope(i); },
+         [this](const RealInput& i) { return exponent(i); },
+         [&](NodeId id) { return exponent_of(largest(of_kinds[id])); }});
     keep_kinds(graph, of_kinds);
     Printer printer(graph, tables_);
     const std::string begin = printer.statements(RealScope::own, false);
     std::string members, carried;
     for (NodeId id = 0; id < graph.nodes.size(); ++id)
-      if (const ScaledNode& node = graph.at(id); node.scope == RealScope::own && node.op != RealOp::constant) {
+      if (const ScaledNode& node = graph.at(id);
+          node.scope == RealScope::own && node.op != RealOp::constant) {
         members += fmt::format("Real n{};\n", id);
         carried += fmt::format("own.n{0} = n{0};\n", id);
       }
@@ -454,7 +458,8 @@ class Rounds {
     return fmt::format(
         "struct Own {{\n{}}};\n"
         "CUBOCT_DEVICE static void begin(const Frame& at, uint32_t i, Own& own, bool& fits) {{\n{}{}}}\n"
-        "CUBOCT_DEVICE static void pair(const Frame& at, uint32_t i, const Own& own, const RealPair<Real>& pair, "
+        "CUBOCT_DEVICE static void pair(const Frame& at, uint32_t i, const Own& own, const RealPair<Real>& "
+        "pair, "
         "Real (&sums)[kSums], bool& fits) {{\nconst uint32_t other = pair.j;\n{}}}\n",
         members, begin, carried, text);
   }
@@ -468,14 +473,15 @@ class Rounds {
   std::string finish_text(const ProgramRound& round, bool last) {
     std::vector<NodeId> outputs;
     for (const ProgramWrite& write : round.made) outputs.push_back(write.node);
-    const ScaledGraph graph =
-        scaled(round.finish, outputs,
-               {[this](const RealInput& i) { return constant(i); },
-                [](const RealInput&) { return RealScope::own; }, [this](const RealInput& i) { return exponent(i); },
-                [](NodeId) { return 0; }});
+    const ScaledGraph graph = scaled(
+        round.finish, outputs,
+        {[this](const RealInput& i) { return constant(i); }, [](const RealInput&) { return RealScope::own; },
+         [this](const RealInput& i) { return exponent(i); }, [](NodeId) { return 0; }});
     Printer printer(graph, tables_);
     std::string text = printer.statements(RealScope::own, false);
-    const auto is_zero = [&](NodeId id) { return graph.at(id).op == RealOp::constant && graph.at(id).value == 0; };
+    const auto is_zero = [&](NodeId id) {
+      return graph.at(id).op == RealOp::constant && graph.at(id).value == 0;
+    };
     std::optional<int> of_force;
     for (size_t n = 0; n < outputs.size(); ++n)
       if (last && is_force(round.made[n].number) && !is_zero(graph.outputs[n]))
@@ -493,7 +499,8 @@ class Rounds {
       }
       once(made_, number, program_.particle);
       if (!field_[number] && !is_zero(node)) field_[number] = graph.at(node).exponent;
-      text += fmt::format("at.to_fields[{}][i] = {};\n", number, printer.value(node, field_[number].value_or(0)));
+      text +=
+          fmt::format("at.to_fields[{}][i] = {};\n", number, printer.value(node, field_[number].value_or(0)));
     }
     return fmt::format(
         "CUBOCT_DEVICE static void finish(const Frame& at, uint32_t i, const Real (&sums)[kSums], "
@@ -528,14 +535,16 @@ RealBondKinds bond_kinds_of(const RuleProgram& program, const ProgramStart& star
   constexpr double kGrain = 1e-12;
   const std::vector<bool> written = written_bonds(program);
   std::vector<double> grain;
-  for (const std::vector<double>& values : start.bond) grain.push_back(kGrain * std::max(largest(values), 1e-300));
+  for (const std::vector<double>& values : start.bond)
+    grain.push_back(kGrain * std::max(largest(values), 1e-300));
   RealBondKinds kinds;
   kinds.field.resize(start.bond.size());
   std::map<std::vector<int64_t>, uint32_t> known;
   std::vector<int64_t> key;
   for (size_t b = 0; b < start.rows.vector.size(); ++b) {
     key.clear();
-    for (const double along : start.rows.vector[b]) key.push_back(std::llround(along / (kGrain * program.reach)));
+    for (const double along : start.rows.vector[b])
+      key.push_back(std::llround(along / (kGrain * program.reach)));
     for (size_t n = 0; n < start.bond.size(); ++n)
       if (!written[n]) key.push_back(std::llround(start.bond[n][b] / grain[n]));
     const auto [at, fresh] = known.try_emplace(key, static_cast<uint32_t>(kinds.packed.size()));
