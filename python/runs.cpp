@@ -69,7 +69,8 @@ Fields shown_by(const Rule& rule, const RealFrame& frame) {
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
   if (!given.engine.empty()) given.options.check({engine_row(given.engine).name}, {});
-  const Loaded loaded = load_plan(sources, false, given.engine);
+  const Loaded loaded =
+      load_plan(sources, false, given.engine, !given.engine.empty() && given.options.is_real(given.engine));
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const RunAsked asked = for_scene(given, scene);
@@ -124,7 +125,7 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   if (std::set(engines.begin(), engines.end()).size() != engines.size() || engines.size() < 2)
     throw InputError("a crosscheck needs two or more different engines", "engines=[\"golden\", \"lattice\"]");
   options.check(engines, {});
-  const Loaded loaded = load_plan(sources, false, engines.front());
+  const Loaded loaded = load_plan(sources, false, strictest(engines));
   const Plan& plan = loaded.setup.plan;
   for (const std::string& engine : engines) check_runs(loaded.scene, plan.arch, engine);
   const bool text = plan.program != nullptr;

@@ -27,10 +27,10 @@ bool is_in_file(const std::string& text, const std::string& path) {
 
 }  // namespace
 
-Loaded load_plan(const Sources& sources, bool looks_only, const std::string& engine) {
+Loaded load_plan(const Sources& sources, bool looks_only, const std::string& engine, bool real) {
   Loaded loaded{load_scene(sources.scene, sources.scene_path, {stage_of(sources), sources.from, looks_only}),
                 {}};
-  loaded.setup.plan = scene_plan_of(loaded.scene, arch_of(sources), engine);
+  loaded.setup.plan = scene_plan_of(loaded.scene, arch_of(sources), engine, real);
   return loaded;
 }
 

@@ -20,7 +20,8 @@ struct Sources {
 
 // The scene with its plan, or what stands for one. Throws InputError with the place in the text.
 // `looks_only`: a later stage may do without `from`.
-Loaded load_plan(const Sources& sources, bool looks_only = false, const std::string& engine = "");
+Loaded load_plan(const Sources& sources, bool looks_only = false, const std::string& engine = "",
+                 bool real = false);
 std::vector<StageName> stages_of(const Sources& sources);
 // Throws InputError where the stage cannot be read, wherever it is to begin.
 void read_stage(const Sources& sources);

@@ -5,58 +5,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
 
+#include "cli/run/crosscheck_text.h"
+#include "cli/run/load_any.h"
+#include "cli/run/told.h"
+#include "hw/engine/scene_engine.h"
 #include "model/analysis/real_bounds.h"
 #include "model/base/interrupt.h"
 #include "model/base/process.h"
 #include "model/base/steps.h"
 #include "model/base/text.h"
 #include "model/real/reference.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
-
-double largest(const std::vector<Vec3>& of) {
-  double most = 0;
-  for (const Vec3& value : of) most = std::max(most, value.norm());
-  return most;
-}
-
-// What is told of a comparison: lines for people, and the same for scripts.
-struct Told {
-  const Answer& answer;
-  std::vector<Items> errors{};
-};
-
-// The particle whose error is the largest share of its bound. Whether all are within.
-template <class Bound>
-bool tell(Told& told, const std::string& what, const std::vector<Vec3>& got, const std::vector<Vec3>& exact,
-          Bound bound, const char* unit, const std::string& more) {
-  double worst = -1, most = 0;
-  size_t at = 0;
-  for (size_t i = 0; i < got.size(); ++i) {
-    const double error = (got[i] - exact[i]).norm();
-    const double share = error > 0 || std::isnan(error) ? error / bound(i) : 0;
-    most = std::max(most, error);
-    if (share > worst || std::isnan(share)) worst = share, at = i;
-    if (std::isnan(share)) break;
-  }
-  Items& items = told.errors.emplace_back();
-  items.add("of", what);
-  items.add("largest_error", most);
-  items.add("unit", unit);
-  items.add("particle", uint64_t{at});
-  items.add("error", (got[at] - exact[at]).norm());
-  items.add("bound", double{bound(at)});
-  told.answer.say("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n",
-                  what, most, unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
-  if (worst <= 1) return true;
-  told.answer.say(
-      "beyond its bound: particle {} has ({:.9g}, {:.9g}, {:.9g}) {}, the reference ({:.9g}, {:.9g}, "
-      "{:.9g})\n",
-      at, got[at][0], got[at][1], got[at][2], unit, exact[at][0], exact[at][1], exact[at][2]);
-  return false;
-}
 
 RealOptions options_of(const Scene& scene, Precision precision) {
   RealOptions options;
@@ -110,19 +75,49 @@ bool check_forces(Told& told, const Scene& scene, const RealFrame& frame, bool f
       fmt::format(", largest force {:.3g} N", largest(exact)));
 }
 
+// How far the reference ran, and what the engine's frames are compared with.
+struct Comparison {
+  uint64_t step;
+  std::function<bool(Told&, const std::vector<RealFrame>&)> compare;
+};
+
+Comparison pair_comparison(const Scene& scene, bool floats, uint64_t last) {
+  const auto exact = std::make_shared<Short>(scene, floats, last);
+  return {exact->step, [&scene, floats, last, exact](Told& told, const std::vector<RealFrame>& frames) {
+            bool within = check_forces(told, scene, frames.front(), floats, "at the start");
+            if (last > 0)
+              within &= check_forces(told, scene, frames.back(), floats, fmt::format("after {} steps", last));
+            for (const RealFrame& frame : frames)
+              if (frame.step == exact->step && exact->step > 0)
+                within &= tell(
+                    told, fmt::format("positions after {} steps", exact->step), frame.x, exact->x,
+                    [&](size_t) { return exact->bound; }, "m",
+                    fmt::format(" (of the reference in floats {:.3g} m)", exact->of_floats));
+            return within;
+          }};
+}
+
+Comparison text_comparison(const Scene& scene, bool floats, uint64_t last) {
+  const auto exact = std::make_shared<TextComparison>(scene, floats, last);
+  return {exact->step(),
+          [exact](Told& told, const std::vector<RealFrame>& frames) { return exact->compare(told, frames); }};
+}
+
 }  // namespace
 
 int crosscheck_real(const Input& input, const EngineOptions& choice, std::optional<uint64_t> steps,
                     const std::string& out, const Answer& answer) {
-  const Loaded loaded = load_plan(input);
+  const Loaded loaded = load_any(input, "gpu", true);
   const Scene& scene = loaded.scene;
+  check_runs(scene, loaded.setup.plan.arch, "gpu");
   catch_interrupts();
   const bool floats = choice.precision == "float";
   const uint64_t last = steps.value_or(std::min(scene.steps, kRealSteps));
-  const Short exact(scene, floats, last);
+  const Comparison comparison = scene.rule.rounds != nullptr ? text_comparison(scene, floats, last)
+                                                             : pair_comparison(scene, floats, last);
   RunRequest request;
   request.steps = last;
-  request.frames = {0, exact.step, last};
+  request.frames = {0, comparison.step, last};
   put_in_order(request.frames);
   request.hash_every = 0;
   request.forces = true;
@@ -148,15 +143,7 @@ int crosscheck_real(const Input& input, const EngineOptions& choice, std::option
     answer.say("gpu: {}\n", why);
     return end("gpu: " + why, 1);
   }
-  bool within = check_forces(told, scene, trace.bodies.front(), floats, "at the start");
-  if (last > 0)
-    within &= check_forces(told, scene, trace.bodies.back(), floats, fmt::format("after {} steps", last));
-  for (const RealFrame& frame : trace.bodies)
-    if (frame.step == exact.step && exact.step > 0)
-      within &= tell(
-          told, fmt::format("positions after {} steps", exact.step), frame.x, exact.x,
-          [&](size_t) { return exact.bound; }, "m",
-          fmt::format(" (of the reference in floats {:.3g} m)", exact.of_floats));
+  const bool within = comparison.compare(told, trace.bodies);
   if (within)
     answer.say("within bounds: {} particles over {} steps, gpu in {} against the reference in doubles\n",
                scene.body.size(), last, floats ? "floats" : "doubles");

@@ -136,7 +136,8 @@ RunOptions for_scene(RunOptions options, const Scene& scene) {
 }
 
 Ended run_once(const RunOptions& given) {
-  const Loaded loaded = load_any(given.input, given.engine, !given.engine.empty() && given.engines.is_real(given.engine));
+  const Loaded loaded =
+      load_any(given.input, given.engine, !given.engine.empty() && given.engines.is_real(given.engine));
   const RunOptions options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();

@@ -43,6 +43,15 @@ void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {
       step, fastest);
 }
 
+void throw_not_compiled(const char* numbers, const std::string& why) {
+  throw InputError(fmt::format("a rule of text in {}s is compiled for the device: {}", numbers, why),
+                   "the package nvidia-cuda-nvrtc has CUDA's compiler; --precision fixed needs none");
+}
+
+std::string table_ends_text(uint64_t step) {
+  return fmt::format("step {}: a table is asked for more than it has; is dt too long?", step);
+}
+
 void require_devices(const Options& options) {
   if (options.block < 32 || options.block > 256 || options.block % 32 != 0)
     throw InputError(fmt::format("a block of {} threads", options.block), "a multiple of 32 from 32 to 256");

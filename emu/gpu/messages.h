@@ -16,6 +16,10 @@ namespace cuboct::gpu {
 [[noreturn]] void throw_far_particle(size_t particle);
 // std::runtime_error: a particle with so many others around.
 [[noreturn]] void throw_too_dense(uint64_t others);
+// InputError: a rule of text in "float"s or "double"s, and why there is no code of it.
+[[noreturn]] void throw_not_compiled(const char* numbers, const std::string& why);
+// Of a step in which a table is asked for more than it has.
+std::string table_ends_text(uint64_t step);
 // InputError where an ordinal is not there, or a block is no multiple of 32 up to 256.
 void require_devices(const Options& options);
 // InputError where a rule's positions are wider than the fixed engine's numbers.

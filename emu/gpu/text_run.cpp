@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emu/gpu/rounds/host_code.h"
+#include "emu/gpu/rounds/nvrtc.h"
 #include "model/base/error.h"
+#include "model/base/resources.h"
 #include "model/real/real_engine.h"
 #include "model/run/checkpoint.h"
 #include "model/run/reference_engine.h"
@@ -16,6 +19,11 @@ namespace {
 
 RealOptions on_demand(size_t particles) {
   return {.threads = reference_threads(particles), .on_demand = true};
+}
+
+std::string compiled(const std::string& source, const std::string& architecture) {
+  if (architecture == "host") return host_file(source, cache_directory());
+  return compiled_file(source, architecture, cache_directory());
 }
 
 }  // namespace
@@ -45,7 +53,7 @@ TextRun::TextRun(const Scene& scene, const Body& body, double cell_edge, const G
       choice_(choice),
       cell_edge_(cell_edge),
       device_(make_real_rounds(scene.rule, body_, scene.periodic, choice.arithmetic == Arithmetic::float64,
-                               choice.engine, rounds_compiler(choice.interpret), memory)) {
+                               choice.engine, compiled, memory)) {
   renew();
   if (choice.hooks.ready) choice.hooks.ready();
 }
@@ -97,7 +105,8 @@ RunState TextRun::frame(bool forces) {
   } catch (const TableEnds& error) {
     throw RoundsError(error.what());
   }
-  if (forces) frame.force = program.still ? std::vector<Vec3>(now.size(), Vec3::Zero()) : std::move(look.force);
+  if (forces)
+    frame.force = program.still ? std::vector<Vec3>(now.size(), Vec3::Zero()) : std::move(look.force);
   for (const ProgramField& field : program.particle) {
     if (!field.shown) continue;
     const uint32_t numbers = field.numbers();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A rule that is text, in floats or doubles on a GPU, behind the interface of all engines. The device makes the
-// steps, forces and fields. What else is asked of a state, such as its energies, the reference tells of it.
+// A rule that is text, in floats or doubles on a GPU, behind the interface of all engines. The device makes
+// the steps, forces and fields. What else is asked of a state, such as its energies, the reference tells of
+// it.
 #pragma once
 
 #include <memory>
@@ -25,7 +26,8 @@ class TextRun final : public RoundsRun {
   EngineMemory memory() override;
 
  private:
-  TextRun(const Scene& scene, const Body& body, double cell_edge, const GpuChoice& choice, const Memory& memory);
+  TextRun(const Scene& scene, const Body& body, double cell_edge, const GpuChoice& choice,
+          const Memory& memory);
   void renew() override;
   // Why the next step is none: in the reference's words where it is none for it, too.
   [[noreturn]] void tell(const std::string& why);

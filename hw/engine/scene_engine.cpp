@@ -54,14 +54,17 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
   }
 }
 
-Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines) {
-  for (const std::string& engine : engines) check_runs(scene, arch, engine);
-  // An engine that takes cubes alone decides for all.
+const std::string& strictest(const std::vector<std::string>& engines) {
   const auto cubes = std::ranges::find_if(engines, [](const std::string& engine) {
     const EngineRow* row = find_engine(engine);
     return row != nullptr && row->bits && !row->any_cells;
   });
-  return scene_plan_of(scene, arch, cubes == engines.end() ? engines.front() : *cubes);
+  return cubes == engines.end() ? engines.front() : *cubes;
+}
+
+Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines) {
+  for (const std::string& engine : engines) check_runs(scene, arch, engine);
+  return scene_plan_of(scene, arch, strictest(engines));
 }
 
 std::vector<std::string> engines_to_cross(const Scene& scene, const Arch& arch) {

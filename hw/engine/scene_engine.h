@@ -24,6 +24,8 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
 // that no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene). `real`:
 // the engine is to compute in real numbers, so that a rule of text needs no integers.
 Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "", bool real = false);
+// Of several engines that share a plan, the one that takes the fewest shapes of cells.
+const std::string& strictest(const std::vector<std::string>& engines);
 // The same for several engines that hold the same bits: each must run the scene.
 Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std::string>& engines);
 // Those that a crosscheck compares where nobody names any.

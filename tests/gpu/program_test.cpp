@@ -398,6 +398,87 @@ TEST(GpuLooks, AreAllOrAFew) {
   EXPECT_EQ(gpu::watch_steps({0, 7}, 1'000'000'000), (std::vector<uint64_t>{0, 7}));
 }
 
+// A law that integers refuse: an exponential of what no distance bounds from below.
+const char* const kMorse = R"(units = "reduced"
+mass = 1.0
+
+[rule]
+name = "morse"
+reach = "1.7"
+parameters = { depth = 1.0, width = 5.0, friction = 0.1 }
+let.e = "exp(-width * (r - 1))"
+particle.heat.what = "what friction took"
+round = [{ sum.pull = "2 * depth * width * (e - e^2) * d / r", finish.force = "pull - friction * mass * v / sqrt(1 + norm(v))", finish.heat = "heat + dt * friction * dot(v, v)" }]
+energy.pair = "depth * (e^2 - 2 * e)"
+
+[packing]
+pitch = 1.0
+
+[box]
+cells = [4, 4, 4]
+periodic = "xyz"
+
+[[velocity]]
+thermal_energy = 0.2
+seed = 1
+
+[[probe]]
+name = "all"
+kind = "temperature"
+region = { shape = "sphere", radius = 100 }
+
+[run]
+dt = 0.004
+steps = 40
+frame_every = 20
+)";
+
+TEST_F(GpuProgram, RunsARuleOfTextInRealNumbers) {
+  const std::string scene = bench_.path("morse.toml");
+  std::ofstream(scene) << kMorse;
+  for (const std::string precision : {"double", "float"}) {
+    const Trace gpu = run("gpu" + precision, {scene, "--engine", "gpu", "--precision", precision});
+    EXPECT_NE(lines_with(answer_.out, "compiled for host"), "");
+    const Trace reference = run("reference" + precision, {scene, "--engine", "reference"});
+    const double tolerance = precision == "float" ? 1e-5 : 1e-12;
+    expect_curves(gpu, reference, tolerance);
+    ASSERT_EQ(gpu.bodies.size(), 3u);
+    ASSERT_EQ(gpu.bodies[2].shown.size(), 1u);
+    EXPECT_EQ(gpu.bodies[2].step, 40u);
+    for (size_t i = 0; i < 256; ++i) {
+      EXPECT_GT(reference.bodies[2].shown[0][i], 0);
+      EXPECT_NEAR(gpu.bodies[2].shown[0][i], reference.bodies[2].shown[0][i], 10 * tolerance);
+    }
+    EXPECT_EQ(bench_.cuboct({"report", bench_.path("gpu" + precision)}).code, 0);
+  }
+  expect_refusal({"run", scene, "--engine", "gpu", "--precision", "float", "--gpus", "2"},
+                 "a rule of text runs on one GPU\n  hint: --gpus 1\n");
+}
+
+TEST_F(GpuProgram, OfARuleOfTextIsWithinBoundsOfTheReference) {
+  const std::string scene = bench_.path("morse.toml");
+  std::ofstream(scene) << kMorse;
+  const auto crosscheck = [&](const std::string& of, const std::string& precision) {
+    return bench_.cuboct(
+        {"crosscheck", of, "--engines", "reference,gpu", "--precision", precision, "--steps", "30"});
+  };
+  for (const std::string precision : {"float", "double"}) {
+    for (const std::string& of : {scene, std::string("scenes/rules/heat.toml")}) {
+      const Answer answer = crosscheck(of, precision);
+      EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
+      EXPECT_NE(lines_with(answer.out, "at the start: largest error "), "");
+      EXPECT_NE(lines_with(answer.out, "after 30 steps: largest error "), "");
+      EXPECT_NE(
+          lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"),
+          "");
+    }
+  }
+  make_wrong(bench_, "s/depth = 1.0/depth = 1.001/");
+  const Answer answer = crosscheck(scene, "float");
+  EXPECT_EQ(answer.code, 1);
+  EXPECT_NE(lines_with(answer.out, "beyond its bound: particle "), "") << answer.out << answer.err;
+}
+
 TEST_F(GpuProgram, SaysHowARuleOfTextRuns) {
   const auto says = [&](const std::string& options) {
     const std::string out = bench_.path("text.trace");
@@ -405,6 +486,13 @@ TEST_F(GpuProgram, SaysHowARuleOfTextRuns) {
     EXPECT_EQ(answer.code, 0) << answer.err;
     return lines_with(answer.out, "kernels");
   };
+  EXPECT_EQ(says(" --precision double"), "the rule's kernels are compiled for host\n");
+  const Answer refused =
+      program("scenes/rules/heat.toml --precision double --rule-code interpreted --out out");
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.err,
+            "--rule-code interpreted goes with --precision fixed\n"
+            "  hint: a rule of text in real numbers is compiled for the device\n");
   EXPECT_EQ(says(" --rule-code interpreted"), "the rule's kernels are interpreted\n");
   EXPECT_EQ(says(""), "the rule's kernels are interpreted: CUDA's compiler knows no architecture 'host'\n");
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "emu/gpu/rounds/real_rounds_engine.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -196,9 +194,7 @@ class RealRoundsEngine final : public RealRounds {
     try {
       kernels_ = std::make_unique<LoadedKernels>(stream_, compile(text_.source, architecture), text_.names);
     } catch (const std::runtime_error& e) {
-      throw InputError(fmt::format("a rule of text in {}s is compiled for the device: {}",
-                                   kDoubles ? "double" : "float", e.what()),
-                       "the package nvidia-cuda-nvrtc has CUDA's compiler; --precision fixed needs none");
+      throw_not_compiled(kDoubles ? "double" : "float", e.what());
     }
     how_ = "compiled for " + architecture;
   }
@@ -239,8 +235,8 @@ class RealRoundsEngine final : public RealRounds {
     types_.set(stream_, types);
     std::vector<RealFour<Real>> tables;
     for (const std::array<double, 4>& entry : text_.tables)
-      tables.push_back({{static_cast<Real>(entry[0]), static_cast<Real>(entry[1]), static_cast<Real>(entry[2]),
-                         static_cast<Real>(entry[3])}});
+      tables.push_back({{static_cast<Real>(entry[0]), static_cast<Real>(entry[1]),
+                         static_cast<Real>(entry[2]), static_cast<Real>(entry[3])}});
     tables_.set(stream_, tables);
     control_.resize(1), most_.resize(1), sum_.resize(1);
     frame_.types = types_.data(), frame_.tables = tables_.data(), frame_.control = control_.data();
@@ -425,7 +421,8 @@ class RealRoundsEngine final : public RealRounds {
     bin_count_.zero(stream_), bin_taken_.zero(stream_);
     const Copy& now = state();
     for_each(stream_, 0, count_, block_,
-             RealSettle{bins, {now.x[0].data(), now.x[1].data(), now.x[2].data()}, bin_.data(), bin_count_.data()});
+             RealSettle{
+                 bins, {now.x[0].data(), now.x[1].data(), now.x[2].data()}, bin_.data(), bin_count_.data()});
     const auto all = static_cast<uint32_t>(bins.count[0] * bins.count[1] * bins.count[2]);
     exclusive_sums(stream_, bin_count_.data(), bin_first_.data(), all);
     for_each(stream_, 0, count_, block_,
@@ -481,8 +478,12 @@ class RealRoundsEngine final : public RealRounds {
     for (size_t f = 0; f < numbers(); ++f) frame.to_fields[f] = copies_[1 - field_at_[f]].fields[f].data();
     Copy& others = copies_[1 - who_];
     for_each(stream_, 0, count_, block_,
-             RealGather<Real, Number>{order_.data(), frame, others.type.data(), others.id.data(),
-                                      listed_at_.data(), near_at_.data(),
+             RealGather<Real, Number>{order_.data(),
+                                      frame,
+                                      others.type.data(),
+                                      others.id.data(),
+                                      listed_at_.data(),
+                                      near_at_.data(),
                                       {listed_x_[0].data(), listed_x_[1].data(), listed_x_[2].data()},
                                       static_cast<int>(numbers())});
     at_ = to, who_ = 1 - who_;
@@ -549,8 +550,7 @@ class RealRoundsEngine final : public RealRounds {
 
   // The state is that before the step that cannot be.
   [[noreturn]] void fail(const RealControl& control) const {
-    if (control.beyond < control.lost)
-      throw TableEnds(fmt::format("step {}: a table is asked for more than it has; is dt too long?", step_ + 1));
+    if (control.beyond < control.lost) throw TableEnds(table_ends_text(step_ + 1));
     Body body;
     body.x.resize(count_), body.v.resize(count_), body.u.resize(count_);
     read(body);
@@ -598,8 +598,8 @@ class RealRoundsEngine final : public RealRounds {
 }  // namespace
 
 std::unique_ptr<RealRounds> make_real_rounds(const Rule& rule, const Body& body, const Periodic& periodic,
-                                             bool doubles, const Options& options, const CompileRounds& compile,
-                                             const Memory& memory) {
+                                             bool doubles, const Options& options,
+                                             const CompileRounds& compile, const Memory& memory) {
   if (options.devices.size() > 1)
     throw InputError("a rule of text runs on one GPU", "--gpus 1").about({"rule.file", "rule"});
   // A bond may be longer than places of 32 bits tell.

@@ -24,8 +24,9 @@ class RealRounds {
  public:
   virtual ~RealRounds() = default;
 
-  // LostPosition where a position leaves all bounds, TableEnds where a table is asked for more than it has: the
-  // state before that step stands. Returns early, after a complete step, where model/base/interrupt.h says so.
+  // LostPosition where a position leaves all bounds, TableEnds where a table is asked for more than it has:
+  // the state before that step stands. Returns early, after a complete step, where model/base/interrupt.h
+  // says so.
   virtual void advance(uint64_t steps) = 0;
   virtual uint64_t step_count() const = 0;
   virtual void read(Body& body) const = 0;  // x, v, and u where it has one: by id, not wrapped
@@ -48,7 +49,7 @@ class TableEnds : public std::runtime_error {
 // has, or several devices are asked for; std::runtime_error where CUDA fails. Keeps a reference to the rule,
 // which is text.
 std::unique_ptr<RealRounds> make_real_rounds(const Rule& rule, const Body& body, const Periodic& periodic,
-                                             bool doubles, const Options& options, const CompileRounds& compile,
-                                             const Memory& memory = {});
+                                             bool doubles, const Options& options,
+                                             const CompileRounds& compile, const Memory& memory = {});
 
 }  // namespace cuboct::gpu

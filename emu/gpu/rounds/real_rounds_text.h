@@ -22,16 +22,16 @@ struct RealExponents {
 
 // Bonds that have the same numbers that never change are of one kind.
 struct RealBondKinds {
-  std::vector<uint32_t> of;             // by bond
-  std::vector<Vec3> packed;             // by kind, m
+  std::vector<uint32_t> of;                // by bond
+  std::vector<Vec3> packed;                // by kind, m
   std::vector<std::vector<double>> field;  // [number][kind], of those that no round writes
 };
 RealBondKinds bond_kinds_of(const RuleProgram& program, const ProgramStart& start);
 
 struct RealRoundsText {
-  std::string source;              // includes files of round_headers()
-  std::vector<std::string> names;  // of the kernels, by round
-  std::vector<std::array<double, 4>> tables;             // RealFrame::tables
+  std::string source;                                   // includes files of round_headers()
+  std::vector<std::string> names;                       // of the kernels, by round
+  std::vector<std::array<double, 4>> tables;            // RealFrame::tables
   std::vector<std::vector<std::vector<double>>> kinds;  // [round][kind][number]: RealFrame::kinds
   RealExponents exponents;
 };
@@ -39,7 +39,8 @@ struct RealRoundsText {
 struct RealTextOptions {
   bool doubles = false;
   bool wide = false;  // places of 64 bits
-  size_t frame_bytes = 0;  // of the RealFrame that the engine passes; the compiler checks that it is the kernel's
+  size_t frame_bytes =
+      0;  // of the RealFrame that the engine passes; the compiler checks that it is the kernel's
 };
 // InputError where the rule has more numbers than a thread of the engine has room for, or two rounds make the
 // same field.

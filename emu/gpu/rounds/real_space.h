@@ -10,8 +10,8 @@
 namespace cuboct::gpu {
 
 struct RealSpace {
-  Vec3 origin = Vec3::Zero();  // m, where x is 0
-  Vec3 unit = Vec3::Zero();    // m, of x
+  Vec3 origin = Vec3::Zero();                      // m, where x is 0
+  Vec3 unit = Vec3::Zero();                        // m, of x
   Vec3 low = Vec3::Zero(), length = Vec3::Zero();  // m, of the box, or of the body as it began
   std::array<bool, 3> wraps{};
   std::array<RealRing, 3> ring{};

@@ -42,8 +42,8 @@ class Scaling {
     return scope;
   }
   static RealScope both(RealScope a, RealScope b) {
-    const bool apart = (a == RealScope::kind && b == RealScope::own) ||
-                       (a == RealScope::own && b == RealScope::kind);
+    const bool apart =
+        (a == RealScope::kind && b == RealScope::own) || (a == RealScope::own && b == RealScope::kind);
     return apart ? RealScope::pair : std::max(a, b);
   }
 
@@ -92,10 +92,13 @@ class Scaling {
   }
   // Of constants alone, some of which are those of the scene.
   NodeId folded(const RealNode& from, const ScaledNode& node) {
-    const auto of = [&](size_t k) { return k < static_cast<size_t>(arity(from.op)) ? at(node.of[k]).value : 0; };
+    const auto of = [&](size_t k) {
+      return k < static_cast<size_t>(arity(from.op)) ? at(node.of[k]).value : 0;
+    };
     ScaledNode constant{.op = RealOp::constant};
-    constant.value = from.op == RealOp::constant || node.op == RealOp::constant ? node.value
-                                                                              : applied(from, of(0), of(1), of(2));
+    constant.value = from.op == RealOp::constant || node.op == RealOp::constant
+                         ? node.value
+                         : applied(from, of(0), of(1), of(2));
     constant.exponent = exponent_of(constant.value);
     return add(constant);
   }
@@ -147,7 +150,7 @@ class Scaling {
   const RealGraph& graph_;
   const RealInputs& inputs_;
   std::vector<RealScope> scope_;
-  std::vector<bool> inverted_;                     // something is divided by it
+  std::vector<bool> inverted_;  // something is divided by it
   std::vector<std::optional<NodeId>> made_, reciprocal_;
   ScaledGraph result_;
 };
