@@ -10,9 +10,11 @@
 #ifdef __CUDACC__
 #define CUBOCT_DEVICE __device__
 #define CUBOCT_UNROLL _Pragma("unroll")
+#define CUBOCT_NO_UNROLL _Pragma("unroll 1")
 #else
 #define CUBOCT_DEVICE
 #define CUBOCT_UNROLL
+#define CUBOCT_NO_UNROLL
 #endif
 
 namespace cuboct::gpu {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
 
 namespace cuboct::graph {
 namespace {
@@ -24,7 +26,7 @@ std::vector<int> same_values(const Graph& graph, const std::vector<std::vector<i
 }  // namespace
 
 Registers registers_for(const Graph& graph, const std::vector<std::vector<int>>& parts,
-                        const std::vector<int>& outputs) {
+                        const std::vector<int>& outputs, const std::vector<int>& sizes) {
   const std::vector<int> same = same_values(graph, parts);
   std::vector<int> order;
   for (const auto& part : parts) order.insert(order.end(), part.begin(), part.end());
@@ -36,9 +38,11 @@ Registers registers_for(const Graph& graph, const std::vector<std::vector<int>>&
   for (const int n : outputs) last[index(same[index(n)])] = kEver;
 
   Registers registers{std::vector<int>(graph.nodes.size(), -1), 0};
+  const auto size_of = [&](int n) { return sizes.empty() ? 1 : sizes[index(n)]; };
+  const auto more = [&](int size) { return std::exchange(registers.count, registers.count + size); };
   for (const int n : order)
-    if (!is_computed(graph.nodes[index(n)])) registers.of[index(n)] = registers.count++;
-  std::vector<int> free;
+    if (!is_computed(graph.nodes[index(n)])) registers.of[index(n)] = more(size_of(n));
+  std::map<int, std::vector<int>> free_of;  // by size
   for (size_t time = 0; time < order.size(); ++time) {
     const int n = order[time];
     const Node& node = graph.nodes[index(n)];
@@ -47,7 +51,8 @@ Registers registers_for(const Graph& graph, const std::vector<std::vector<int>>&
       registers.of[index(n)] = registers.of[index(same[index(n)])];
       continue;
     }
-    if (free.empty()) free.push_back(registers.count++);
+    std::vector<int>& free = free_of[size_of(n)];
+    if (free.empty()) free.push_back(more(size_of(n)));
     registers.of[index(n)] = free.back();
     free.pop_back();
     std::vector<int> done{n};  // nobody may read it
@@ -56,7 +61,7 @@ Registers registers_for(const Graph& graph, const std::vector<std::vector<int>>&
     done.erase(std::unique(done.begin(), done.end()), done.end());
     for (const int input : done)
       if (is_computed(graph.nodes[index(input)]) && last[index(input)] <= time)
-        free.push_back(registers.of[index(input)]);
+        free_of[size_of(input)].push_back(registers.of[index(input)]);
   }
   return registers;
 }

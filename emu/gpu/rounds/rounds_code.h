@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A program as a device runs it: operations over registers, one after the other. All threads of a warp run
-// the same one, so what an operation is costs them little.
+// A program as a device interprets it: operations over registers, one after the other. All threads of a warp
+// run the same one, for several partners of their particles at once, so what it is to fetch an operation and
+// to choose among them is shared.
+//
+// A register holds 32 bits of each of these partners. A value whose interval fits 32 bits takes one register;
+// others take two, of which the second holds the upper halves.
 #pragma once
 
 #include <cstdint>
@@ -12,34 +16,45 @@
 namespace cuboct::gpu {
 
 inline constexpr int kMostInputs = 6;  // a dot of three axes
+inline constexpr uint8_t kWideOut = 0x80;
 
-// 16 bytes at a time.
+// 16 bytes, as a thread loads them.
 struct alignas(16) Operation {
-  int64_t low, high;  // of a clamp; of a constant both are its number, of noise low is the seed
-  uint8_t op, inputs, shift, width;
-  uint8_t out, table;
+  uint8_t op, inputs, shift, width;  // of noise, `inputs` has the seed behind the three of the graph; of a
+                                     // clamp, both ends of its range
+  uint8_t table;
+  uint8_t narrow;  // 32 bits hold all that happens; of mul and dot, their factors
+  uint8_t wide;    // bit k: input k takes two registers; kWideOut: the result does
+  uint8_t more;    // the next one has the same `op`, `inputs` and `narrow`
+  uint8_t out;
   uint8_t in[kMostInputs];
 };
-// A value that a thread fetches: graph::Source.
-struct Fetch {
-  uint8_t source, to, index, axis;
+struct Constant {
+  int64_t value;
+  uint8_t to, wide;
 };
-// A register into a number of a field, a sum or an axis.
-struct Store {
-  uint8_t from, to;
+// A value that a thread fetches: graph::Source. Rounded by `shift`.
+struct alignas(16) Fetch {
+  uint8_t source, to, wide, index, axis, shift;
+};
+// A value into a number of a field, a sum or an axis.
+struct alignas(16) Store {
+  uint8_t from, wide, to;
 };
 
-// One round. `own` is fetched once a particle, `early` and `late` once a partner; the late operations are for
-// pairs that count, the register `when`.
+// One round. `own` is fetched, and what `prepare` makes of it computed, once a particle; `early` and `late`
+// are once a partner. The late operations are for pairs that count, the register `when`.
 struct RoundLists {
-  std::vector<Operation> constants, early, late, finish_constants, finish;
+  std::vector<Constant> constants, finish_constants;
+  std::vector<Operation> prepare, early, late, finish;
   std::vector<Fetch> own, early_fetch, late_fetch, finish_fetch;
   std::vector<Store> terms, writes, v, u, drift;
-  int when = 0;
+  int when = -1;      // all pairs count
   int registers = 0;  // of the pair's operations, and then of the finish
   std::vector<Store> bond_writes;
   // Of a bond that is not met: whether it counts no more, the register `broken`.
-  std::vector<Operation> broken_constants, broken_code;
+  std::vector<Constant> broken_constants;
+  std::vector<Operation> broken_code;
   std::vector<Fetch> broken_fetch;
   int broken = -1;  // all bonds count
   int broken_registers = 0;

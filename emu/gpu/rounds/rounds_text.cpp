@@ -42,8 +42,8 @@ class Entries {
     for (const auto& [known, first] : tables_)
       if (*known == table) return first;
     const size_t first = entries.size();
-    for (size_t k = 0; k < table.c0.size(); ++k)
-      entries.push_back({table.c0[k], table.c1[k], table.degree == 2 ? table.c2[k] : 0, 0});
+    const std::vector<TableEntry> more = entries_of(table);
+    entries.insert(entries.end(), more.begin(), more.end());
     tables_.emplace_back(&table, first);
     return first;
   }
@@ -241,6 +241,13 @@ class RoundText {
 };
 
 }  // namespace
+
+std::vector<TableEntry> entries_of(const FixedTable& table) {
+  std::vector<TableEntry> entries;
+  for (size_t k = 0; k < table.c0.size(); ++k)
+    entries.push_back({table.c0[k], table.c1[k], table.degree == 2 ? table.c2[k] : 0, 0});
+  return entries;
+}
 
 RoundsText text_of(const FixedProgram& program, size_t frame_bytes) {
   RoundsText text;
