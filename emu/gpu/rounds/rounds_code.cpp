@@ -74,6 +74,11 @@ bool is_narrow(graph::Interval range) {
          range.high <= std::numeric_limits<int32_t>::max();
 }
 
+// A rounding adds half, and takes 1 from what is negative.
+bool rounds_narrow(graph::Interval of, int shift) {
+  return shift > 0 && shift < 32 && is_narrow({of.low - 1, of.high + (int64_t{1} << (shift - 1))});
+}
+
 // `list` in another order: after a node come those that are like it and can be computed, as axes of a vector.
 template <class Alike>
 std::vector<int> grouped(const graph::Graph& graph, const std::vector<int>& list, const Alike& alike) {
@@ -124,8 +129,9 @@ class Code {
       if (const Node& node = node_of(nodes_, n); is_computed(node) && !(all_count && node.op == Op::within))
         made.push_back(operation(n));
     for (size_t k = 0; k + 1 < made.size(); ++k)
-      made[k].more = made[k].op == made[k + 1].op && made[k].inputs == made[k + 1].inputs &&
-                     made[k].narrow == made[k + 1].narrow;
+      if (made[k].op() == made[k + 1].op() && made[k].inputs() == made[k + 1].inputs() &&
+          made[k].narrow() == made[k + 1].narrow())
+        made[k].word[0] |= Operation::kMore;
     return made;
   }
   // Of those of own, or of a pair.
@@ -140,7 +146,8 @@ class Code {
       if (node.source == Source::bond_field) number = program_.bond_place(node.index) + node.axis;
       if (node.source == Source::sum) number = round_.place(node.index) + node.axis;
       made.push_back({static_cast<uint8_t>(node.source), at(n), is_wide(n), static_cast<uint8_t>(number),
-                      static_cast<uint8_t>(node.axis), static_cast<uint8_t>(node.shift)});
+                      static_cast<uint8_t>(node.axis), static_cast<uint8_t>(node.shift),
+                      is_narrow_apart(node)});
     }
     return made;
   }
@@ -156,6 +163,16 @@ class Code {
   int registers() const { return registers_.count; }
 
  private:
+  bool is_narrow_apart(const Node& node) const {
+    const graph::Interval range = range_of_apart();
+    return node.source == Source::apart &&
+           (node.shift == 0 ? is_narrow(range) : rounds_narrow(range, node.shift));
+  }
+  // Two cells, of which each position lies in one.
+  graph::Interval range_of_apart() const {
+    const int64_t most = (int64_t{1} << (program_.position_frac + 1)) - 1;
+    return {-most, most};
+  }
   uint8_t register_of(int n) const { return static_cast<uint8_t>(registers_.of[index(n)]); }
   const Constant& constant(int64_t value) {
     const auto known = std::find_if(constants_.begin(), constants_.end(),
@@ -167,42 +184,50 @@ class Code {
     return constants_.back();
   }
 
-  void add_input(Operation& operation, uint8_t at, bool wide) const {
-    const size_t k = operation.inputs++;
-    if (k >= kMostInputs) refuse(round_.name, "inputs of one operation", k + 1, kMostInputs);
-    operation.in[k] = at;
-    if (wide) operation.wide |= static_cast<uint8_t>(1u << k);
-  }
-  void add_constant(Operation& operation, int64_t value) {
-    const Constant& input = constant(value);
-    add_input(operation, input.to, input.wide);
+  struct Inputs {
+    std::vector<uint8_t> at;
+    uint32_t wide = 0;  // bits
+    void add(uint8_t place, bool is_wide) {
+      wide |= static_cast<uint32_t>(is_wide) << at.size();
+      at.push_back(place);
+    }
+  };
+  Inputs inputs_of(const Node& node) {
+    Inputs inputs;
+    for (const int n : node.inputs) inputs.add(at(n), is_wide(n));
+    std::vector<int64_t> more;
+    if (node.op == Op::clamp || node.op == Op::within) more = {node.range.low, node.range.high};
+    if (node.op == Op::noise) more = {node.number};
+    for (const int64_t value : more) {
+      const Constant& input = constant(value);
+      inputs.add(input.to, input.wide);
+    }
+    if (inputs.at.size() > kMostInputs)
+      refuse(round_.name, "inputs of one operation", inputs.at.size(), kMostInputs);
+    return inputs;
   }
 
   Operation operation(int n) {
     const Node& node = node_of(nodes_, n);
+    const Inputs inputs = inputs_of(node);
     Operation made{};
-    made.op = static_cast<uint8_t>(node.op);
-    made.shift = static_cast<uint8_t>(node.shift), made.width = static_cast<uint8_t>(node.width);
-    made.out = register_of(n);
-    if (is_wide(n)) made.wide = kWideOut;
-    made.table = static_cast<uint8_t>(std::max(node.table, 0));
-    for (const int input : node.inputs) add_input(made, at(input), is_wide(input));
-    if (node.op == Op::clamp || node.op == Op::within)
-      add_constant(made, node.range.low), add_constant(made, node.range.high);
-    if (node.op == Op::noise) add_constant(made, node.number);
-    made.narrow = is_narrow_operation(node, made);
+    made.set(0, static_cast<int>(node.op));
+    if (is_wide(n)) made.word[0] |= Operation::kWideOut;
+    if (is_narrow_operation(n, inputs.wide)) made.word[0] |= Operation::kNarrow;
+    made.set(2, static_cast<int>(inputs.wide));
+    made.set(3, register_of(n));
+    for (size_t k = 0; k < inputs.at.size(); ++k) made.set(4 + static_cast<int>(k), inputs.at[k]);
+    made.set(10, static_cast<int>(inputs.at.size()));
+    made.set(11, node.shift);
+    made.set(12, node.width);
+    made.set(13, std::max(node.table, 0));
     return made;
   }
-  bool is_narrow_operation(const Node& node, const Operation& made) const {
-    if (node.op == Op::mul || node.op == Op::dot) return (made.wide & ~kWideOut) == 0;
-    if (made.wide != 0) return false;
-    // A rounding adds half, and takes 1 from what is negative.
-    if (node.op == Op::round) {
-      const graph::Interval of = node_of(nodes_, node.inputs[0]).range;
-      return node.shift > 0 && node.shift < 32 &&
-             is_narrow({of.low - 1, of.high + (int64_t{1} << (node.shift - 1))});
-    }
-    return true;
+  bool is_narrow_operation(int n, uint32_t wide_inputs) const {
+    const Node& node = node_of(nodes_, n);
+    if (node.op == Op::mul || node.op == Op::dot) return wide_inputs == 0;
+    if (wide_inputs != 0 || is_wide(n)) return false;
+    return node.op != Op::round || rounds_narrow(node_of(nodes_, node.inputs[0]).range, node.shift);
   }
 
   const graph::FixedProgram& program_;
@@ -249,10 +274,14 @@ void add_pair(const graph::FixedProgram& program, const graph::Round& round, Rou
   const std::vector<int> all = needed_by(graph, kept);
   kept.push_back(round.when);
   const std::vector<int> prepare = of_particle(graph, needed_by(graph, kept));
-  kept.insert(kept.end(), prepare.begin(), prepare.end());
   const std::vector<int> when = needed_by(graph, {round.when});
   const std::vector<int> early = grouped(graph, without(when, prepare), alike);
   const std::vector<int> late = grouped(graph, without(without(all, when), prepare), alike);
+  // What is made once serves all partners.
+  for (const std::vector<int>* list : {&early, &late})
+    for (const int n : *list)
+      for (const int input : node_of(graph, n).inputs)
+        if (std::ranges::binary_search(prepare, input)) kept.push_back(input);
   std::vector<int> first = prepare;
   first.insert(first.end(), early.begin(), early.end());
 
@@ -263,11 +292,19 @@ void add_pair(const graph::FixedProgram& program, const graph::Round& round, Rou
   lists.own = code.fetches(prepare, true);
   lists.early_fetch = code.fetches(early, false);
   lists.late_fetch = code.fetches(late, false);
+  if (const Node& counts = node_of(graph, round.when); counts.op != Op::constant || counts.number == 0)
+    lists.when = code.at(round.when);
+  for (Fetch& apart : lists.apart) apart.to = kNowhere;
+  // Registers of the late ones may still be in use.
+  std::erase_if(lists.when < 0 ? lists.late_fetch : lists.early_fetch, [&](const Fetch& fetch) {
+    Fetch& apart = lists.apart[fetch.axis];
+    if (static_cast<Source>(fetch.source) != Source::apart || apart.to != kNowhere) return false;
+    apart = fetch;
+    return true;
+  });
   lists.terms = code.axes(terms_of(round));
   for (const graph::Write& write : round.bond_writes)
     lists.bond_writes.push_back(code.store(write.node, program.bond_place(write.field) + write.component));
-  if (const Node& counts = node_of(graph, round.when); counts.op != Op::constant || counts.number == 0)
-    lists.when = code.at(round.when);
   lists.constants = code.constants();
   lists.registers = code.registers();
 }

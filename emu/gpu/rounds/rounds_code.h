@@ -7,36 +7,52 @@
 // others take two, of which the second holds the upper halves.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "emu/gpu/rounds/rounds_limits.h"
+#include "model/base/fixed_math.h"
 #include "model/graph/program.h"
 
 namespace cuboct::gpu {
 
 inline constexpr int kMostInputs = 6;  // a dot of three axes
-inline constexpr uint8_t kWideOut = 0x80;
 
-// 16 bytes, as a thread loads them.
+// In words, as a thread loads them at once and takes apart what it needs.
 struct alignas(16) Operation {
-  uint8_t op, inputs, shift, width;  // of noise, `inputs` has the seed behind the three of the graph; of a
-                                     // clamp, both ends of its range
-  uint8_t table;
-  uint8_t narrow;  // 32 bits hold all that happens; of mul and dot, their factors
-  uint8_t wide;    // bit k: input k takes two registers; kWideOut: the result does
-  uint8_t more;    // the next one has the same `op`, `inputs` and `narrow`
-  uint8_t out;
-  uint8_t in[kMostInputs];
+  uint32_t word[4];
+
+  CUBOCT_HD uint32_t byte(int k) const { return word[k / 4] >> (k % 4 * 8) & 0xff; }
+  CUBOCT_HD void set(int k, int value) { word[k / 4] |= static_cast<uint32_t>(value) << (k % 4 * 8); }
+
+  CUBOCT_HD uint32_t op() const { return byte(0); }
+  // The result takes two registers; 32 bits hold all that happens, of mul and dot their factors; the next
+  // operation has the same op, inputs and narrow.
+  CUBOCT_HD bool wide_out() const { return (word[0] & kWideOut) != 0; }
+  CUBOCT_HD bool narrow() const { return (word[0] & kNarrow) != 0; }
+  CUBOCT_HD bool more() const { return (word[0] & kMore) != 0; }
+  // Input k takes two registers.
+  CUBOCT_HD bool wide(int k) const { return (word[0] >> (16 + k) & 1) != 0; }
+  CUBOCT_HD uint32_t out() const { return byte(3); }
+  CUBOCT_HD uint32_t in(int k) const { return byte(4 + k); }
+  // Of noise the seed stands behind the three inputs of the graph; of a clamp both ends of its range do.
+  CUBOCT_HD uint32_t inputs() const { return byte(10); }
+  CUBOCT_HD int shift() const { return static_cast<int>(byte(11)); }
+  CUBOCT_HD int width() const { return static_cast<int>(byte(12)); }
+  CUBOCT_HD uint32_t table() const { return byte(13); }
+
+  static constexpr uint32_t kWideOut = 1u << 8, kNarrow = 1u << 9, kMore = 1u << 10;
 };
 struct Constant {
   int64_t value;
   uint8_t to, wide;
 };
-// A value that a thread fetches: graph::Source. Rounded by `shift`.
+// A value that a thread fetches: graph::Source. Rounded by `shift`; `narrow`: 32 bits hold all that happens.
 struct alignas(16) Fetch {
-  uint8_t source, to, wide, index, axis, shift;
+  uint8_t source, to, wide, index, axis, shift, narrow;
 };
+inline constexpr uint8_t kNowhere = 0xff;
 // A value into a number of a field, a sum or an axis.
 struct alignas(16) Store {
   uint8_t from, wide, to;
@@ -47,6 +63,7 @@ struct alignas(16) Store {
 struct RoundLists {
   std::vector<Constant> constants, finish_constants;
   std::vector<Operation> prepare, early, late, finish;
+  std::array<Fetch, 3> apart;  // by axis, what all pairs have; to kNowhere where nobody reads it
   std::vector<Fetch> own, early_fetch, late_fetch, finish_fetch;
   std::vector<Store> terms, writes, v, u, drift;
   int when = -1;      // all pairs count

@@ -22,7 +22,7 @@ namespace {
 constexpr double kNearSkin = 0.06;  // of a near list, of what the rule reaches; and at most half the list's
 constexpr uint64_t kMostBins = 1u << 26;
 constexpr uint32_t kShortestBatch = 4;
-constexpr size_t kMostBytesOfBlock = 32 * 1024;  // of registers that are interpreted
+constexpr size_t kMostBytesOfBlock = 40 * 1024;  // of registers that are interpreted
 constexpr uint32_t kProvenByGolden = 32768;      // particles: more take golden too long
 
 size_t index(int n) { return static_cast<size_t>(n); }

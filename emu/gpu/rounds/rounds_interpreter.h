@@ -73,6 +73,7 @@ struct Interpreted {
     uint32_t j[kTogether], own_type, other_type[kTogether];
     int64_t apart[3][kTogether];  // visible units
     size_t slot[kTogether];       // of bonds
+    const int64_t* constants[kTogether];
     uint32_t live;
   };
 
@@ -122,30 +123,38 @@ struct Interpreted {
     Together pairs{};
     pairs.own_type = at.from.type[i];
     for (uint32_t row = 0; row < count; row += kTogether) {
-      pairs.live = 0;
+      uint32_t there = 0, met = 0;
       CUBOCT_UNROLL
       for (uint32_t l = 0; l < kTogether; ++l) {
         const bool one = row + l < count;
-        pairs.slot[l] = (one ? row + l : row) * at.list.stride + i;
-        const uint32_t j = at.list.entries[pairs.slot[l]] & ((1u << kPartnerBits) - 1);
+        const size_t slot = (one ? row + l : row) * at.list.stride + i;
+        const uint32_t j = at.list.entries[slot] & ((1u << kPartnerBits) - 1);
         int64_t apart[3];
         for (int a = 0; a < 3; ++a) apart[a] = (at.from.x[a][j] >> at.guard) - x[a];
-        const bool met = at.bonds.meet(x, apart);
-        for (int a = 0; a < 3; ++a) pairs.apart[a][l] = met ? apart[a] : 0;
+        const bool meets = at.bonds.meet(x, apart);
+        for (int a = 0; a < 3; ++a) pairs.apart[a][l] = meets ? apart[a] : 0;
         pairs.j[l] = j, pairs.other_type[l] = at.from.type[j];
-        pairs.live |= static_cast<uint32_t>(one && met) << l;
-        if (!met && one) fits = fits && broken(at, own, pairs.slot[l]);
-        if (!met && one) keep(at, own, pairs.slot[l]);
+        pairs.slot[l] = slot;
+        pairs.constants[l] =
+            at.bonds.constants + at.bonds.kind[slot] * static_cast<uint32_t>(at.bonds.constant_count);
+        there |= static_cast<uint32_t>(one) << l;
+        met |= static_cast<uint32_t>(meets) << l;
       }
+      pairs.live = there & met;
       const uint32_t counted = run_pairs(at, own, pairs, fits);
-      CUBOCT_UNROLL
-      for (int l = 0; l < kTogether; ++l)
-        if ((pairs.live & ~counted) >> l & 1) keep(at, own, pairs.slot[l]);
+      if (counted == there) continue;
+      CUBOCT_NO_UNROLL
+      for (uint32_t l = 0; l < kTogether; ++l) {
+        if (((there & ~counted) >> l & 1) == 0) continue;
+        const size_t slot = (row + l) * at.list.stride + i;
+        if ((met >> l & 1) == 0) fits = fits && broken(at, own, slot);
+        keep(at, own, slot);
+      }
     }
   }
   CUBOCT_DEVICE bool broken(const RoundsFrame& at, const Own& own, size_t slot) const {
     if (code.broken < 0) return false;
-    const RoundsRegisters r = own.registers.from(code.registers);
+    const RoundsRegisters r = own.registers.from(static_cast<uint32_t>(code.registers));
     put_constants(code.broken_constants, r);
     for (uint32_t k = 0; k < code.broken_fetch.count; ++k) {
       const Fetch f = load(own.in(code.broken_fetch) + k);
@@ -153,7 +162,7 @@ struct Interpreted {
     }
     for (uint32_t k = 0; k < code.broken_code.count; ++k)
       operate(load(own.in(code.broken_code) + k), r, 0, code.broken_tables);
-    return r.lane(code.broken, false, 0) != 0;
+    return r.lane(static_cast<uint32_t>(code.broken), false, 0) != 0;
   }
   CUBOCT_DEVICE void keep(const RoundsFrame& at, const Own& own, size_t slot) const {
     for (uint32_t k = 0; k < code.bond_writes.count; ++k)
@@ -165,6 +174,7 @@ struct Interpreted {
                                    bool& fits) const {
     const RoundsRegisters& r = own.registers;
     uint32_t live = pairs.live;
+    put_apart(r, pairs);
     CUBOCT_NO_UNROLL
     for (bool late = code.when < 0;; late = true) {
       const Part<Fetch>& fetches = late ? code.late_fetch : code.early_fetch;
@@ -175,7 +185,7 @@ struct Interpreted {
         fits = (wrong & live) == 0 && fits;
         break;
       }
-      const Quad when = r.low(code.when);
+      const Quad when = r.low(static_cast<uint32_t>(code.when));
       CUBOCT_UNROLL
       for (int l = 0; l < kTogether; ++l)
         if (when.v[l] == 0) live &= ~(1u << l);
@@ -209,6 +219,29 @@ struct Interpreted {
     const bool sum = static_cast<graph::Source>(f.source) == graph::Source::sum;
     own.registers.put_all(f.to, f.wide, rounded(sum ? own.sum(f.index) : of_own(at, f, i), f.shift));
   }
+  CUBOCT_DEVICE void put_apart(const RoundsRegisters& r, const Together& pairs) const {
+    CUBOCT_UNROLL
+    for (int a = 0; a < 3; ++a) {
+      const Fetch& f = code.apart[a];
+      if (f.to == kNowhere) continue;
+      const Rounding by(f.shift);
+      if (f.narrow) {
+        const int32_t half = static_cast<int32_t>(by.half);
+        Quad value;
+        CUBOCT_UNROLL
+        for (int l = 0; l < kTogether; ++l) {
+          const auto apart = static_cast<int32_t>(pairs.apart[a][l]);
+          value.v[l] = plus(plus(apart, half), apart >> 31 & by.odd) >> f.shift;
+        }
+        r.put(f.to, value);
+      } else {
+        WideQuad value;
+        CUBOCT_UNROLL
+        for (int l = 0; l < kTogether; ++l) value.v[l] = rounded(pairs.apart[a][l], by);
+        r.put(f.to, f.wide, value);
+      }
+    }
+  }
   CUBOCT_DEVICE void put_pairs(const RoundsFrame& at, const RoundsRegisters& r, const Fetch& f,
                                const Together& pairs) const {
     WideQuad value{};
@@ -241,8 +274,11 @@ struct Interpreted {
       case graph::Source::other_id:
         each([&](int l) { return int64_t{at.from.id[pairs.j[l]]}; });
         break;
-      default:
-        if constexpr (Bonded) each([&](int l) { return of_bond(at, f, pairs.slot[l]); });
+      case graph::Source::bond_field:
+        if constexpr (Bonded) each([&](int l) { return at.bonds.from[f.index][pairs.slot[l]]; });
+        break;
+      default:  // bond_constant
+        if constexpr (Bonded) each([&](int l) { return pairs.constants[l][f.index]; });
     }
     const Rounding by(f.shift);
     if (f.shift > 0) each([&](int l) { return rounded(value.v[l], by); });

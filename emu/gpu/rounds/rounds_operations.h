@@ -6,6 +6,7 @@
 
 #include <type_traits>
 
+#include "emu/gpu/grid_view.h"
 #include "emu/gpu/rounds/rounds_program.h"
 #include "model/graph/graph.h"
 #include "model/graph/integer_ops.h"
@@ -26,11 +27,11 @@ struct RoundsRegisters {
   Quad* first;
   uint32_t stride;
 
-  CUBOCT_DEVICE RoundsRegisters from(int k) const { return {&at(k), stride}; }
-  CUBOCT_DEVICE Quad low(int k) const { return load(&at(k)); }
-  CUBOCT_DEVICE void put(int k, const Quad& value) const { store(&at(k), value); }
+  CUBOCT_DEVICE RoundsRegisters from(uint32_t k) const { return {&at(k), stride}; }
+  CUBOCT_DEVICE Quad low(uint32_t k) const { return load(&at(k)); }
+  CUBOCT_DEVICE void put(uint32_t k, const Quad& value) const { store(&at(k), value); }
 
-  CUBOCT_DEVICE WideQuad value(int k, bool wide) const {
+  CUBOCT_DEVICE WideQuad value(uint32_t k, bool wide) const {
     const Quad lower = low(k);
     WideQuad value;
     CUBOCT_UNROLL
@@ -41,7 +42,7 @@ struct RoundsRegisters {
     for (int l = 0; l < kTogether; ++l) value.v[l] = joined(upper.v[l], lower.v[l]);
     return value;
   }
-  CUBOCT_DEVICE void put(int k, bool wide, const WideQuad& value) const {
+  CUBOCT_DEVICE void put(uint32_t k, bool wide, const WideQuad& value) const {
     Quad half;
     CUBOCT_UNROLL
     for (int l = 0; l < kTogether; ++l) half.v[l] = static_cast<int32_t>(value.v[l]);
@@ -51,7 +52,7 @@ struct RoundsRegisters {
     for (int l = 0; l < kTogether; ++l) half.v[l] = static_cast<int32_t>(value.v[l] >> 32);
     put(k + 1, half);
   }
-  CUBOCT_DEVICE void put_all(int k, bool wide, int64_t value) const {
+  CUBOCT_DEVICE void put_all(uint32_t k, bool wide, int64_t value) const {
     WideQuad all;
     CUBOCT_UNROLL
     for (int l = 0; l < kTogether; ++l) all.v[l] = value;
@@ -59,17 +60,17 @@ struct RoundsRegisters {
   }
 
   // Of one lane.
-  CUBOCT_DEVICE int64_t lane(int k, bool wide, int l) const {
+  CUBOCT_DEVICE int64_t lane(uint32_t k, bool wide, int l) const {
     const int32_t lower = at(k).v[l];
     return wide ? joined(at(k + 1).v[l], lower) : lower;
   }
-  CUBOCT_DEVICE void put_lane(int k, bool wide, int l, int64_t value) const {
+  CUBOCT_DEVICE void put_lane(uint32_t k, bool wide, int l, int64_t value) const {
     at(k).v[l] = static_cast<int32_t>(value);
     if (wide) at(k + 1).v[l] = static_cast<int32_t>(value >> 32);
   }
 
  private:
-  CUBOCT_DEVICE Quad& at(int k) const { return first[static_cast<uint32_t>(k) * stride]; }
+  CUBOCT_DEVICE Quad& at(uint32_t k) const { return first[k * stride]; }
   CUBOCT_DEVICE static int64_t joined(int32_t upper, int32_t lower) {
     return static_cast<int64_t>(static_cast<uint64_t>(static_cast<uint32_t>(upper)) << 32 |
                                 static_cast<uint32_t>(lower));
@@ -105,18 +106,21 @@ CUBOCT_DEVICE inline int64_t entry_value(const CodeTable& table, uint64_t argume
   const TableEntry entry = load(table.entries + (k < table.last ? k : table.last));
   const auto fraction = static_cast<int32_t>(t);
   const Rounding by(table.fraction_bits);
-  return entry.c0 + round_odd((entry.c1 + round_odd(product(entry.c2, fraction), by)) * fraction, by);
+  const int64_t slope = entry.c1 + round_odd(product(entry.c2, fraction), by);
+  const int64_t rise = table.flat ? product(static_cast<int32_t>(slope), fraction) : slope * fraction;
+  return entry.c0 + round_odd(rise, by);
 }
 
-// One operation of one lane. False where a check found what does not fit.
-CUBOCT_DEVICE inline bool operate(const Operation& o, const RoundsRegisters& r, int lane,
-                                  const CodeTable* tables) {
+// One operation of one lane, a function by itself: it is large, and called seldom. False where a check found
+// what does not fit.
+CUBOCT_APART CUBOCT_DEVICE inline bool operate(Operation o, RoundsRegisters r, int lane,
+                                               const CodeTable* tables) {
   using graph::Op;
-  const auto in = [&](int k) { return r.lane(o.in[k], (o.wide >> k & 1) != 0, lane); };
-  const int64_t a = in(0), b = o.inputs > 1 ? in(1) : 0, c = o.inputs > 2 ? in(2) : 0;
+  const auto in = [&](int k) { return r.lane(o.in(k), o.wide(k), lane); };
+  const int64_t a = in(0), b = o.inputs() > 1 ? in(1) : 0, c = o.inputs() > 2 ? in(2) : 0;
   bool fits = true;
   int64_t value = 0;
-  switch (static_cast<Op>(o.op)) {
+  switch (static_cast<Op>(o.op())) {
     case Op::constant:
     case Op::input:
       return true;
@@ -130,28 +134,28 @@ CUBOCT_DEVICE inline bool operate(const Operation& o, const RoundsRegisters& r, 
       value = less(int64_t{0}, a);
       break;
     case Op::shl:
-      value = shifted_left(a, o.shift);
+      value = shifted_left(a, o.shift());
       break;
     case Op::round:
-      value = rounded(a, o.shift);
+      value = rounded(a, o.shift());
       break;
     case Op::floor:
-      value = a >> o.shift;
+      value = a >> o.shift();
       break;
     case Op::mul:
-      value = rounded(times(a, b), o.shift);
+      value = rounded(times(a, b), o.shift());
       break;
     case Op::mac:
-      value = plus(a, rounded(times(b, c), o.shift));
+      value = plus(a, rounded(times(b, c), o.shift()));
       break;
     case Op::dot:
-      if (o.inputs == 2) value = times(a, b);
-      if (o.inputs == 4) value = plus(times(a, c), times(b, in(3)));
-      if (o.inputs == 6) value = plus(plus(times(a, in(3)), times(b, in(4))), times(c, in(5)));
-      value = rounded(value, o.shift);
+      if (o.inputs() == 2) value = times(a, b);
+      if (o.inputs() == 4) value = plus(times(a, c), times(b, in(3)));
+      if (o.inputs() == 6) value = plus(plus(times(a, in(3)), times(b, in(4))), times(c, in(5)));
+      value = rounded(value, o.shift());
       break;
     case Op::lookup:
-      value = entry_value(tables[o.table], static_cast<uint64_t>(a), static_cast<uint32_t>(b));
+      value = entry_value(tables[o.table()], static_cast<uint64_t>(a), static_cast<uint32_t>(b));
       break;
     case Op::lt:
       value = a < b;
@@ -191,21 +195,21 @@ CUBOCT_DEVICE inline bool operate(const Operation& o, const RoundsRegisters& r, 
       value = graph::leading_of(a);
       break;
     case Op::align:
-      value = graph::aligned_of(a, o.shift, o.width);
+      value = graph::aligned_of(a, o.shift(), o.width());
       break;
     case Op::shift:
       value = b >= 0 ? shifted_left(a, static_cast<int>(b < 63 ? b : 63))
                      : rounded(a, static_cast<int>(b > -63 ? -b : 63));
       break;
     case Op::check:
-      value = wrap(a, o.width);
+      value = wrap(a, o.width());
       fits = value == a || b == 0;
       break;
     case Op::noise:
-      value = graph::mixed_of(in(3), a, b, c, o.width);
+      value = graph::mixed_of(in(3), a, b, c, o.width());
       break;
   }
-  r.put_lane(o.out, (o.wide & kWideOut) != 0, lane, value);
+  r.put_lane(o.out(), o.wide_out(), lane, value);
   return fits;
 }
 
@@ -223,7 +227,7 @@ class Lanes {
     next_ = load(at_);
     while (at_ != end_) {
       advance();
-      switch (static_cast<Op>(now_.op)) {
+      switch (static_cast<Op>(now_.op())) {
         case Op::add:
           two([](auto a, auto b) { return plus(a, b); });
           break;
@@ -231,7 +235,7 @@ class Lanes {
           two([](auto a, auto b) { return less(a, b); });
           break;
         case Op::shl:
-          repeat([&] { one([&](auto a) { return shifted_left(a, now_.shift); }); });
+          repeat([&] { one([&](auto a) { return shifted_left(a, now_.shift()); }); });
           break;
         case Op::round:
           repeat([&] { round(); });
@@ -240,7 +244,7 @@ class Lanes {
           repeat([&] { multiply(); });
           break;
         case Op::dot:
-          if (now_.narrow && now_.inputs == kMostInputs)
+          if (now_.narrow() && now_.inputs() == kMostInputs)
             repeat([&] { dot(); });
           else
             lane_by_lane();
@@ -293,7 +297,7 @@ class Lanes {
   CUBOCT_DEVICE void repeat(const F& f) {
     for (;;) {
       f();
-      if (!now_.more) return;
+      if (!now_.more()) return;
       advance();
     }
   }
@@ -302,13 +306,11 @@ class Lanes {
     CUBOCT_UNROLL
     for (int l = 0; l < kTogether; ++l) f(l);
   }
-  CUBOCT_DEVICE Quad low(int k) const { return r_.low(now_.in[k]); }
-  CUBOCT_DEVICE bool is_wide(int k) const { return (now_.wide >> k & 1) != 0; }
-  CUBOCT_DEVICE WideQuad wide(int k) const { return r_.value(now_.in[k], is_wide(k)); }
-  CUBOCT_DEVICE void put(const Quad& value) const { r_.put(now_.out, value); }
-  CUBOCT_DEVICE void put(const WideQuad& value) const {
-    r_.put(now_.out, (now_.wide & kWideOut) != 0, value);
-  }
+  CUBOCT_DEVICE Quad low(int k) const { return r_.low(now_.in(k)); }
+  CUBOCT_DEVICE bool is_wide(int k) const { return now_.wide(k); }
+  CUBOCT_DEVICE WideQuad wide(int k) const { return r_.value(now_.in(k), is_wide(k)); }
+  CUBOCT_DEVICE void put(const Quad& value) const { r_.put(now_.out(), value); }
+  CUBOCT_DEVICE void put(const WideQuad& value) const { r_.put(now_.out(), now_.wide_out(), value); }
 
   template <class F>
   CUBOCT_DEVICE void one(const F& f) const {
@@ -326,7 +328,7 @@ class Lanes {
   }
   template <class F>
   CUBOCT_DEVICE void two(const F& f) {
-    if (now_.narrow) return repeat([&] { two_low(f); });
+    if (now_.narrow()) return repeat([&] { two_low(f); });
     repeat([&] {
       const WideQuad a = wide(0), b = wide(1);
       WideQuad value;
@@ -336,7 +338,7 @@ class Lanes {
   }
   template <class F>
   CUBOCT_DEVICE void three(const F& f) const {
-    if (now_.narrow) {
+    if (now_.narrow()) {
       const Quad a = low(0), b = low(1), c = low(2);
       Quad value;
       each([&](int l) { value.v[l] = f(a.v[l], b.v[l], c.v[l]); });
@@ -349,14 +351,14 @@ class Lanes {
   }
 
   CUBOCT_DEVICE void round() const {
-    if (now_.narrow) {
+    if (now_.narrow()) {
       const Quad a = low(0);
-      const int32_t half = int32_t{1} << (now_.shift - 1);
+      const int32_t half = int32_t{1} << (now_.shift() - 1);
       Quad value;
-      each([&](int l) { value.v[l] = plus(plus(a.v[l], half), a.v[l] >> 31) >> now_.shift; });
+      each([&](int l) { value.v[l] = plus(plus(a.v[l], half), a.v[l] >> 31) >> now_.shift(); });
       return put(value);
     }
-    const Rounding by(now_.shift);
+    const Rounding by(now_.shift());
     one([&](int64_t a) { return rounded(a, by); });
   }
   CUBOCT_DEVICE WideQuad product_low(int j, int k) const {
@@ -366,14 +368,14 @@ class Lanes {
     return value;
   }
   CUBOCT_DEVICE void put_rounded(WideQuad value) const {
-    if (now_.shift > 0) {
-      const Rounding by(now_.shift);
+    if (now_.shift() > 0) {
+      const Rounding by(now_.shift());
       each([&](int l) { value.v[l] = rounded(value.v[l], by); });
     }
     put(value);
   }
   CUBOCT_DEVICE void multiply() const {
-    if (now_.narrow) return put_rounded(product_low(0, 1));
+    if (now_.narrow()) return put_rounded(product_low(0, 1));
     const WideQuad a = wide(0), b = wide(1);
     WideQuad value;
     each([&](int l) { value.v[l] = times(a.v[l], b.v[l]); });
@@ -387,7 +389,7 @@ class Lanes {
     put_rounded(sum);
   }
   CUBOCT_DEVICE void look_up() const {
-    const CodeTable& table = tables_[now_.table];
+    const CodeTable& table = tables_[now_.table()];
     const WideQuad argument = wide(0);
     const Quad law = low(1);
     WideQuad value;
@@ -401,7 +403,7 @@ class Lanes {
     const WideQuad a = wide(0);
     WideQuad value;
     each([&](int l) {
-      value.v[l] = wrap(a.v[l], now_.width);
+      value.v[l] = wrap(a.v[l], now_.width());
       wrong_ |= static_cast<uint32_t>(value.v[l] != a.v[l] && when.v[l] != 0) << l;
     });
     put(value);

@@ -2,6 +2,9 @@
 // The operations of a program in a device's memory.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
+
 #include "emu/gpu/device/device.h"
 #include "emu/gpu/rounds/rounds_code.h"
 #include "emu/gpu/rounds/rounds_text.h"
@@ -11,6 +14,7 @@ namespace cuboct::gpu {
 struct CodeTable {
   int shape, difference_frac, index_bits, bin_bits, first_octave, fraction_bits;
   uint32_t last;  // entry
+  bool flat;      // no slope takes more than 32 bits
   const TableEntry* entries;
 };
 
@@ -34,6 +38,7 @@ struct RoundCode {
   Span<Line> image;
   Span<Constant> constants, finish_constants;
   Part<Operation> prepare, early, late, finish;
+  Fetch apart[3];
   Part<Fetch> own, early_fetch, late_fetch, finish_fetch;
   Part<Store> terms, writes, v, u, drift;
   const CodeTable *tables, *finish_tables;
@@ -84,6 +89,7 @@ class ProgramOnDevice {
       code.tables = put_tables(program.rounds[k].pair);
       code.finish_tables = put_tables(program.rounds[k].finish);
       code.broken_tables = put_tables(program.broken);
+      std::copy(of.apart.begin(), of.apart.end(), code.apart);
       code.types = program.types;
       code.when = of.when, code.registers = of.registers;
       code.broken = of.broken, code.broken_registers = of.broken_registers;
@@ -121,7 +127,7 @@ class ProgramOnDevice {
       const Span<TableEntry> entries = put(entries_of(table), entries_);
       tables.push_back({static_cast<int>(table.shape), table.difference_frac, table.index_bits,
                         table.bin_bits, table.first_octave, table.fraction_bits,
-                        static_cast<uint32_t>(entries.count - 1), entries.data});
+                        static_cast<uint32_t>(entries.count - 1), is_flat(table), entries.data});
     }
     return put(tables, tables_).data;
   }

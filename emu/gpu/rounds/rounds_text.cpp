@@ -25,15 +25,6 @@ bool is_of_own(Source source) {
          source == Source::step;
 }
 
-// The least and the greatest slope that a lookup in this table may meet, before a fraction scales it.
-bool is_flat(const FixedTable& table) {
-  const auto within = [](int64_t v) { return v == static_cast<int32_t>(v); };
-  const int64_t most = (int64_t{1} << table.fraction_bits) - 1;
-  for (size_t k = 0; k < table.c2.size(); ++k)
-    if (!within(table.c1[k] + round_odd(table.c2[k] * most, table.fraction_bits))) return false;
-  return true;
-}
-
 // The entries of all tables of a program.
 class Entries {
  public:
@@ -241,6 +232,14 @@ class RoundText {
 };
 
 }  // namespace
+
+bool is_flat(const FixedTable& table) {
+  const auto within = [](int64_t v) { return v == static_cast<int32_t>(v); };
+  const int64_t most = (int64_t{1} << table.fraction_bits) - 1;
+  for (size_t k = 0; k < table.c2.size(); ++k)
+    if (!within(table.c1[k] + round_odd(table.c2[k] * most, table.fraction_bits))) return false;
+  return true;
+}
 
 std::vector<TableEntry> entries_of(const FixedTable& table) {
   std::vector<TableEntry> entries;
