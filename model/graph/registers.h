@@ -13,9 +13,9 @@ struct Registers {
   int count = 0;
 };
 
-// `parts`: nodes, in an order in which inputs stand before those who use them, that are run one part after the
-// other. Constants and inputs have a register of their own; outputs keep theirs. In parts after the first all
-// pairs count, so `within` has that of its input.
+// `parts`: nodes, in an order in which inputs stand before those who use them, that are run one part after
+// the other. Constants and inputs have a register of their own; outputs keep theirs. In parts after the first
+// all pairs count, so `within` has that of its input.
 Registers registers_for(const Graph& graph, const std::vector<std::vector<int>>& parts,
                         const std::vector<int>& outputs);
 
