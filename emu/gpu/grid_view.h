@@ -10,9 +10,13 @@
 #ifdef __CUDACC__
 #define CUBOCT_DEVICE __device__
 #define CUBOCT_UNROLL _Pragma("unroll")
+#define CUBOCT_NO_UNROLL _Pragma("unroll 1")
+#define CUBOCT_APART __noinline__
 #else
 #define CUBOCT_DEVICE
 #define CUBOCT_UNROLL
+#define CUBOCT_NO_UNROLL
+#define CUBOCT_APART
 #endif
 
 namespace cuboct::gpu {

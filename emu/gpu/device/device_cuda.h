@@ -164,6 +164,15 @@ __device__ T load(const T* at) {
   return value;
 }
 
+template <typename T>
+__device__ void store(T* at, const T& value) {
+  static_assert(sizeof(T) % 16 == 0);
+  const auto* from = reinterpret_cast<const int4*>(&value);
+  auto* to = reinterpret_cast<int4*>(at);
+#pragma unroll
+  for (size_t k = 0; k < sizeof(T) / 16; ++k) to[k] = from[k];
+}
+
 inline constexpr int kLargestBlock = 256;
 
 template <class F>

@@ -71,6 +71,11 @@ const T& load(const T* at) {
   return *at;
 }
 
+template <typename T>
+void store(T* at, const T& value) {
+  *at = value;
+}
+
 template <class F>
 void for_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f) {
   stream.later([=] {

@@ -22,7 +22,8 @@ namespace {
 constexpr double kNearSkin = 0.06;  // of a near list, of what the rule reaches; and at most half the list's
 constexpr uint64_t kMostBins = 1u << 26;
 constexpr uint32_t kShortestBatch = 4;
-constexpr uint32_t kProvenByGolden = 32768;  // particles: more take golden too long
+constexpr size_t kMostBytesOfBlock = 40 * 1024;  // of registers that are interpreted
+constexpr uint32_t kProvenByGolden = 32768;      // particles: more take golden too long
 
 size_t index(int n) { return static_cast<size_t>(n); }
 
@@ -536,10 +537,12 @@ class RoundsEngine final : public IntegerEngine {
   }
   template <bool Bonded>
   void interpret(const RoundsFrame& frame, const RoundCode& code) {
-    const auto threads = static_cast<uint32_t>(block_);
+    // Smaller blocks leave less of a processor's memory unused.
+    auto threads = static_cast<uint32_t>(block_);
+    while (threads > 32 && code.bytes(threads) > kMostBytesOfBlock) threads -= 32;
     const InterpretedBlock<Bonded> block{{frame, {code}}, count_, threads};
-    for_each_block(stream_, (count_ + threads - 1) / threads, block_,
-                   code.numbers() * threads * sizeof(int64_t), block);
+    for_each_block(stream_, (count_ + threads - 1) / threads, static_cast<int>(threads), code.bytes(threads),
+                   block);
   }
 
   void step(uint32_t number, bool compiled) {

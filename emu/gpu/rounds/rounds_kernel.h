@@ -180,10 +180,13 @@ struct RoundsFrame {
 // Graphs has
 //   kBonded, kSums  a program with bonds of its own; how many numbers its sums have, at least 1
 //   Own             what all pairs of a particle share, filled in by begin(frame, i, own)
+//   finish(frame, i, own, sums, motion, fits)  writes fields; in the last round makes the motion
+// and kTogether with
+//   meet(frame, i, own, fits)  for all partners, so many at once
+// or, for one after the other,
 //   pair(frame, own, pair, sums, fits)  whether the pair counts: then its terms are in the sums, and its
 //                   bond has its new numbers; `fits` becomes false where a check found what does not fit
 //   broken(frame, own, slot), keep(frame, slot)  of a bond that is not met
-//   finish(frame, i, own, sums, motion, fits)  writes fields; in the last round makes the motion
 template <class Graphs>
 struct RoundsStep : RoundsFrame, Graphs {
   CUBOCT_DEVICE void operator()(uint32_t i, typename Graphs::Own own) const {
@@ -192,7 +195,9 @@ struct RoundsStep : RoundsFrame, Graphs {
     for (int k = 0; k < Graphs::kSums; ++k) sums[k] = 0;
     this->begin(*this, i, own);
     bool fits = true;
-    if constexpr (Graphs::kBonded)
+    if constexpr (requires { Graphs::kTogether; })
+      this->meet(*this, i, own, fits);
+    else if constexpr (Graphs::kBonded)
       meet_bonds(i, own, sums, fits);
     else
       meet_near(i, own, sums, fits);

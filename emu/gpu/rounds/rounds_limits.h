@@ -4,7 +4,8 @@
 
 namespace cuboct::gpu {
 
-inline constexpr int kMostRegisters = 64;
+inline constexpr int kTogether = 4;  // partners that an interpreted operation takes at once
+inline constexpr int kMostRegisters = 128;
 inline constexpr int kMostBondNumbers = 8;
 inline constexpr int kMostNumbers = 32;  // of a particle's fields; of a round's sums
 

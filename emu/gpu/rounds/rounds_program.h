@@ -2,14 +2,20 @@
 // The operations of a program in a device's memory.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
+
 #include "emu/gpu/device/device.h"
 #include "emu/gpu/rounds/rounds_code.h"
+#include "emu/gpu/rounds/rounds_text.h"
 
 namespace cuboct::gpu {
 
 struct CodeTable {
-  int shape, degree, difference_frac, index_bits, bin_bits, first_octave, fraction_bits;
-  const int32_t *c0, *c1, *c2;
+  int shape, difference_frac, index_bits, bin_bits, first_octave, fraction_bits;
+  uint32_t last;  // entry
+  bool flat;      // no slope takes more than 32 bits
+  const TableEntry* entries;
 };
 
 template <typename T>
@@ -18,21 +24,40 @@ struct Span {
   int count = 0;
 };
 
-// RoundLists on a device.
+// Elements of an image of 16 bytes a line.
+template <typename T>
+struct Part {
+  uint32_t line = 0, count = 0;
+};
+struct alignas(16) Line {
+  uint8_t bytes[16];
+};
+
+// RoundLists on a device. What its threads read again and again is an image that a block copies.
 struct RoundCode {
-  Span<Operation> constants, early, late, finish_constants, finish;
-  Span<Fetch> own, early_fetch, late_fetch, finish_fetch;
-  Span<Store> terms, writes, v, u, drift;
+  Span<Line> image;
+  Span<Constant> constants, finish_constants;
+  Part<Operation> prepare, early, late, finish;
+  Fetch apart[3];
+  Part<Fetch> own, early_fetch, late_fetch, finish_fetch;
+  Part<Store> terms, writes, v, u, drift;
   const CodeTable *tables, *finish_tables;
   int types, when, registers;
-  Span<Store> bond_writes;
-  Span<Operation> broken_constants, broken_code;
-  Span<Fetch> broken_fetch;
+  Part<Store> bond_writes;
+  Span<Constant> broken_constants;
+  Part<Operation> broken_code;
+  Part<Fetch> broken_fetch;
   const CodeTable* broken_tables;
   int broken, broken_registers;
 
-  // Registers and sums of a thread.
-  size_t numbers() const { return static_cast<size_t>(registers + terms.count + broken_registers); }
+  // Of a thread, and of a block beside its threads'.
+  size_t thread_bytes() const {
+    return static_cast<size_t>(registers + broken_registers) * kTogether * sizeof(int32_t) +
+           terms.count * sizeof(int64_t);
+  }
+  size_t bytes(size_t threads) const {
+    return threads * thread_bytes() + static_cast<size_t>(image.count) * sizeof(Line);
+  }
 };
 
 // Holds what RoundCodes point to.
@@ -45,32 +70,30 @@ class ProgramOnDevice {
     pair_constants_ = put_constants(program.pair_constants);
     for (size_t k = 0; k < lists.size(); ++k) {
       const RoundLists& of = lists[k];
-      rounds_.push_back({put(of.constants, operations_),
-                         put(of.early, operations_),
-                         put(of.late, operations_),
-                         put(of.finish_constants, operations_),
-                         put(of.finish, operations_),
-                         put(of.own, fetches_),
-                         put(of.early_fetch, fetches_),
-                         put(of.late_fetch, fetches_),
-                         put(of.finish_fetch, fetches_),
-                         put(of.terms, stores_),
-                         put(of.writes, stores_),
-                         put(of.v, stores_),
-                         put(of.u, stores_),
-                         put(of.drift, stores_),
-                         put_tables(program.rounds[k].pair),
-                         put_tables(program.rounds[k].finish),
-                         program.types,
-                         of.when,
-                         of.registers,
-                         put(of.bond_writes, stores_),
-                         put(of.broken_constants, operations_),
-                         put(of.broken_code, operations_),
-                         put(of.broken_fetch, fetches_),
-                         put_tables(program.broken),
-                         of.broken,
-                         of.broken_registers});
+      std::vector<Line> image;
+      RoundCode code{};
+      code.prepare = add(of.prepare, image), code.early = add(of.early, image),
+      code.late = add(of.late, image);
+      code.finish = add(of.finish, image), code.broken_code = add(of.broken_code, image);
+      code.own = add(of.own, image), code.early_fetch = add(of.early_fetch, image);
+      code.late_fetch = add(of.late_fetch, image), code.finish_fetch = add(of.finish_fetch, image);
+      code.broken_fetch = add(of.broken_fetch, image);
+      code.terms = add(of.terms, image), code.writes = add(of.writes, image);
+      code.v = add(of.v, image), code.u = add(of.u, image), code.drift = add(of.drift, image);
+      code.bond_writes = add(of.bond_writes, image);
+      image.emplace_back();  // a thread loads an operation while it runs the one before
+      code.image = put(image, images_);
+      code.constants = put(of.constants, numbers_);
+      code.finish_constants = put(of.finish_constants, numbers_);
+      code.broken_constants = put(of.broken_constants, numbers_);
+      code.tables = put_tables(program.rounds[k].pair);
+      code.finish_tables = put_tables(program.rounds[k].finish);
+      code.broken_tables = put_tables(program.broken);
+      std::copy(of.apart.begin(), of.apart.end(), code.apart);
+      code.types = program.types;
+      code.when = of.when, code.registers = of.registers;
+      code.broken = of.broken, code.broken_registers = of.broken_registers;
+      rounds_.push_back(code);
     }
   }
   const std::vector<RoundCode>& rounds() const { return rounds_; }
@@ -85,6 +108,13 @@ class ProgramOnDevice {
     into.back().set(stream_, values);
     return {into.back().data(), static_cast<int>(values.size())};
   }
+  template <typename T>
+  static Part<T> add(const std::vector<T>& values, std::vector<Line>& image) {
+    const Part<T> part{static_cast<uint32_t>(image.size()), static_cast<uint32_t>(values.size())};
+    image.resize(image.size() + (values.size() * sizeof(T) + sizeof(Line) - 1) / sizeof(Line));
+    if (!values.empty()) std::memcpy(&image[part.line], values.data(), values.size() * sizeof(T));
+    return part;
+  }
   const int64_t* put_constants(const std::vector<graph::Constants>& constants) {
     std::vector<int64_t> values;
     for (const graph::Constants& one : constants)
@@ -93,19 +123,20 @@ class ProgramOnDevice {
   }
   const CodeTable* put_tables(const graph::Graph& graph) {
     std::vector<CodeTable> tables;
-    for (const FixedTable& table : graph.tables)
-      tables.push_back({static_cast<int>(table.shape), table.degree, table.difference_frac, table.index_bits,
-                        table.bin_bits, table.first_octave, table.fraction_bits, put(table.c0, entries_).data,
-                        put(table.c1, entries_).data, put(table.c2, entries_).data});
+    for (const FixedTable& table : graph.tables) {
+      const Span<TableEntry> entries = put(entries_of(table), entries_);
+      tables.push_back({static_cast<int>(table.shape), table.difference_frac, table.index_bits,
+                        table.bin_bits, table.first_octave, table.fraction_bits,
+                        static_cast<uint32_t>(entries.count - 1), is_flat(table), entries.data});
+    }
     return put(tables, tables_).data;
   }
 
   Stream& stream_;
-  std::vector<Array<Operation>> operations_;
-  std::vector<Array<Fetch>> fetches_;
-  std::vector<Array<Store>> stores_;
+  std::vector<Array<Line>> images_;
+  std::vector<Array<Constant>> numbers_;
   std::vector<Array<CodeTable>> tables_;
-  std::vector<Array<int32_t>> entries_;
+  std::vector<Array<TableEntry>> entries_;
   std::vector<Array<int64_t>> constants_;
   const int64_t *type_constants_ = nullptr, *pair_constants_ = nullptr;
   std::vector<RoundCode> rounds_;

@@ -25,15 +25,6 @@ bool is_of_own(Source source) {
          source == Source::step;
 }
 
-// The least and the greatest slope that a lookup in this table may meet, before a fraction scales it.
-bool is_flat(const FixedTable& table) {
-  const auto within = [](int64_t v) { return v == static_cast<int32_t>(v); };
-  const int64_t most = (int64_t{1} << table.fraction_bits) - 1;
-  for (size_t k = 0; k < table.c2.size(); ++k)
-    if (!within(table.c1[k] + round_odd(table.c2[k] * most, table.fraction_bits))) return false;
-  return true;
-}
-
 // The entries of all tables of a program.
 class Entries {
  public:
@@ -42,8 +33,8 @@ class Entries {
     for (const auto& [known, first] : tables_)
       if (*known == table) return first;
     const size_t first = entries.size();
-    for (size_t k = 0; k < table.c0.size(); ++k)
-      entries.push_back({table.c0[k], table.c1[k], table.degree == 2 ? table.c2[k] : 0, 0});
+    const std::vector<TableEntry> more = entries_of(table);
+    entries.insert(entries.end(), more.begin(), more.end());
     tables_.emplace_back(&table, first);
     return first;
   }
@@ -241,6 +232,21 @@ class RoundText {
 };
 
 }  // namespace
+
+bool is_flat(const FixedTable& table) {
+  const auto within = [](int64_t v) { return v == static_cast<int32_t>(v); };
+  const int64_t most = (int64_t{1} << table.fraction_bits) - 1;
+  for (size_t k = 0; k < table.c2.size(); ++k)
+    if (!within(table.c1[k] + round_odd(table.c2[k] * most, table.fraction_bits))) return false;
+  return true;
+}
+
+std::vector<TableEntry> entries_of(const FixedTable& table) {
+  std::vector<TableEntry> entries;
+  for (size_t k = 0; k < table.c0.size(); ++k)
+    entries.push_back({table.c0[k], table.c1[k], table.degree == 2 ? table.c2[k] : 0, 0});
+  return entries;
+}
 
 RoundsText text_of(const FixedProgram& program, size_t frame_bytes) {
   RoundsText text;

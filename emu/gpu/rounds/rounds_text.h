@@ -20,6 +20,11 @@ struct RoundsText {
 // `frame_bytes`: of the RoundsFrame that the engine passes; the compiler checks that it is the kernel's.
 RoundsText text_of(const graph::FixedProgram& program, size_t frame_bytes);
 
+// Whether no slope that a lookup meets, before a fraction scales it, takes more than 32 bits.
+bool is_flat(const FixedTable& table);
+// A line's c2 is 0.
+std::vector<TableEntry> entries_of(const FixedTable& table);
+
 // Name and text of what the source includes.
 const std::vector<std::pair<std::string, std::string>>& round_headers();
 
