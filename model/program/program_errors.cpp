@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "model/graph/noise.h"
 #include "model/program/cubic_table.h"
@@ -14,8 +15,8 @@ namespace {
 
 // Roundings of an operation, in halves of an ulp. A quotient is a product with a reciprocal, which of a root
 // is CUDA's rsqrt, of 2 ulps; a root is its argument times that. Functions have at most the ulps of CUDA's
-// programming guide: exp 2, log 1, sin and cos 2, pow 4.
-constexpr double kQuotient = 6, kRoot = 6, kFunction = 5, kPower = 9;
+// programming guide: exp 2, log 1, sin and cos 2, pow 4, erfc 5.
+constexpr double kQuotient = 6, kRoot = 6, kFunction = 5, kPower = 9, kErrorFunction = 11;
 // Of a table: the steps to its argument, and Horner's scheme over four powers.
 constexpr double kArgument = 4, kHorner = 16;
 // Equal bonds are of one kind, whose numbers are those of one of them: up to this part of the largest.
@@ -174,6 +175,10 @@ ProgramErrors::Number ProgramErrors::result(const RealNode& node, const Numbers&
     case RealOp::sine:
     case RealOp::cosine:
       return {r, a.error + kFunction * both_};
+    case RealOp::error_function: {
+      const double least = std::max(std::abs(a.value) - a.error, 0.0);
+      return told(2 * std::numbers::inv_sqrtpi * std::exp(-least * least) * a.error, kErrorFunction);
+    }
     case RealOp::power:
       return told(std::abs(b.value * r / a.value) * a.error + std::abs(r * std::log(a.value)) * b.error,
                   kPower);
