@@ -155,7 +155,9 @@ TEST(InterpretedOperations, RoundAtTheEndOf32Bits) {
     const graph::FixedProgram program = program_of(b.take());
     Interpreter interpreter(program);
     interpreter.for_each_operation([&](const gpu::Operation& o) {
-      if (static_cast<graph::Op>(o.op()) == graph::Op::round) EXPECT_EQ(o.narrow(), most == kMost - 2048);
+      if (static_cast<graph::Op>(o.op()) == graph::Op::round) {
+        EXPECT_EQ(o.narrow(), most == kMost - 2048);
+      }
     });
     for (const bool together : {true, false}) {
       interpreter.fetch([&](int, size_t lane) { return lane % 2 == 0 ? most : -most; });
