@@ -24,7 +24,8 @@ double seconds_of(auto&& engine, uint64_t steps) {
 std::vector<double> step_rates(const Scene& scene, const Plan& plan, const RateRequest& request) {
   const bool fixed = request.arithmetic == Arithmetic::fixed;
   const GpuChoice choice{request.arithmetic, request.engine, {}};
-  const State initial = fixed && plan.program == nullptr ? to_fixed(scene.body, plan.rule, plan.lattice, plan.origin) : State();
+  const State initial =
+      fixed && plan.program == nullptr ? to_fixed(scene.body, plan.rule, plan.lattice, plan.origin) : State();
   const auto rounds = [&](const State& state) {
     return make_rounds_engine(plan, state, request.engine, rounds_compiler(request.interpret));
   };

@@ -399,7 +399,7 @@ TEST(GpuLooks, AreAllOrAFew) {
 }
 
 // A law that integers refuse: an exponential of what no distance bounds from below.
-const char* const kMorse = R"(units = "reduced"
+const char* const kMorse = R"toml(units = "reduced"
 mass = 1.0
 
 [rule]
@@ -431,7 +431,7 @@ region = { shape = "sphere", radius = 100 }
 dt = 0.004
 steps = 40
 frame_every = 20
-)";
+)toml";
 
 TEST_F(GpuProgram, RunsARuleOfTextInRealNumbers) {
   const std::string scene = bench_.path("morse.toml");
@@ -459,7 +459,8 @@ TEST_F(GpuProgram, OfARuleOfTextIsWithinBoundsOfTheReference) {
   const std::string scene = bench_.path("morse.toml");
   std::ofstream(scene) << kMorse;
   const auto crosscheck = [&](const std::string& of, const std::string& precision) {
-    return bench_.cuboct({"crosscheck", of, "--engines", "reference,gpu", "--precision", precision, "--steps", "30"});
+    return bench_.cuboct(
+        {"crosscheck", of, "--engines", "reference,gpu", "--precision", precision, "--steps", "30"});
   };
   for (const std::string precision : {"float", "double"}) {
     for (const std::string& of : {scene, std::string("scenes/rules/heat.toml")}) {
@@ -467,8 +468,9 @@ TEST_F(GpuProgram, OfARuleOfTextIsWithinBoundsOfTheReference) {
       EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
       EXPECT_NE(lines_with(answer.out, "at the start: largest error "), "");
       EXPECT_NE(lines_with(answer.out, "after 30 steps: largest error "), "");
-      EXPECT_NE(lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"),
-                "");
+      EXPECT_NE(
+          lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"),
+          "");
     }
   }
   make_wrong(bench_, "s/depth = 1.0/depth = 1.001/");
@@ -485,7 +487,8 @@ TEST_F(GpuProgram, SaysHowARuleOfTextRuns) {
     return lines_with(answer.out, "kernels");
   };
   EXPECT_EQ(says(" --precision double"), "the rule's kernels are compiled for host\n");
-  const Answer refused = program("scenes/rules/heat.toml --precision double --rule-code interpreted --out out");
+  const Answer refused =
+      program("scenes/rules/heat.toml --precision double --rule-code interpreted --out out");
   EXPECT_EQ(refused.code, 2);
   EXPECT_EQ(refused.err,
             "--rule-code interpreted goes with --precision fixed\n"

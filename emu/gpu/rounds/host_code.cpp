@@ -27,8 +27,8 @@ std::string host_file(const std::string& source, const std::string& directory) {
     write_text((scratch.path() / name).string(), text);
   }
   write_text((scratch.path() / "rounds.cpp").string(), source);
-  run_logged("the C++ compiler", fmt::format("{} {} -o rounds.so rounds.cpp", compiler, kFlags), scratch.path(),
-             scratch.path() / "log");
+  run_logged("the C++ compiler", fmt::format("{} {} -o rounds.so rounds.cpp", compiler, kFlags),
+             scratch.path(), scratch.path() / "log");
   fs::rename(scratch.path() / "rounds.so", path);
   return path.string();
 }
