@@ -28,11 +28,19 @@ double largest(const std::vector<Vec3>& of) {
   return most;
 }
 
+// Of a number as a literal: its leading 24 bits, whatever its size.
+double lost_by_float(double value) {
+  if (value == 0 || !std::isfinite(value)) return 0;
+  const double leading = std::ldexp(value, -std::ilogb(value));
+  return std::ldexp(std::abs(leading - static_cast<float>(leading)), std::ilogb(value));
+}
+
 }  // namespace
 
 ProgramErrors::ProgramErrors(const Rule& rule, const Body& body, const Periodic& periodic, bool floats)
     : rule_(rule),
       program_(*rule.rounds->text()),
+      floats_(floats),
       u_(std::ldexp(1.0, floats ? -24 : -53)),
       both_(u_ + std::ldexp(1.0, -53)),
       type_(body.type),
@@ -212,7 +220,7 @@ void ProgramErrors::run(const RealGraph& graph, Numbers& values, const Pair& pai
   values.resize(graph.nodes().size());
   for (NodeId id = 0; id < values.size(); ++id) {
     const RealNode& node = graph.at(id);
-    values[id] = node.op == RealOp::constant ? Number{node.value, u_ * std::abs(node.value)}
+    values[id] = node.op == RealOp::constant ? Number{node.value, floats_ ? lost_by_float(node.value) : 0}
                  : node.op == RealOp::input  ? input(node.input, pair, sums)
                                              : result(node, values);
   }

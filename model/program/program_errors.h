@@ -56,6 +56,7 @@ class ProgramErrors {
 
   const Rule& rule_;
   const RuleProgram& program_;
+  bool floats_;
   double u_, both_;       // half an ulp of 1, of the device's numbers, and with that of doubles
   double unit_, places_;  // m, of a position; of a difference of two
   double grain_ = 0;

@@ -399,7 +399,7 @@ TEST(GpuLooks, AreAllOrAFew) {
 }
 
 // A law that integers refuse: an exponential of what no distance bounds from below.
-const char* const kMorse = R"(units = "reduced"
+const char* const kMorse = R"toml(units = "reduced"
 mass = 1.0
 
 [rule]
@@ -431,7 +431,7 @@ region = { shape = "sphere", radius = 100 }
 dt = 0.004
 steps = 40
 frame_every = 20
-)";
+)toml";
 
 TEST_F(GpuProgram, RunsARuleOfTextInRealNumbers) {
   const std::string scene = bench_.path("morse.toml");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The run loop around an engine that a test makes up: it drifts, and loses a particle when it is told to.
 #include "emu/gpu/run.h"
+#include "emu/gpu/rounds/real_rounds_engine.h"
 #include "emu/gpu/rounds/rounds_engine.h"
 
 #include <gtest/gtest.h>
@@ -82,6 +83,11 @@ std::unique_ptr<Engine> resume_real_engine(const Scene&, const Body&, Arithmetic
 }
 std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan&, const State&, const Options&,
                                                   const CompileRounds&) {
+  return nullptr;
+}
+
+std::unique_ptr<RealRounds> make_real_rounds(const Rule&, const Body&, const Periodic&, bool, const Options&,
+                                             const CompileRounds&, const Memory&) {
   return nullptr;
 }
 

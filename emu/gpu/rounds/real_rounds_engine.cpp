@@ -47,7 +47,7 @@ class RealRoundsEngine final : public RealRounds {
         stream_(options.devices.front()),
         count_(static_cast<uint32_t>(body.size())),
         step_(memory.step),
-        space_(body, periodic, program_.reach, kWide),
+        space_(space_of(body, periodic, memory)),
         skin_(program_.reach, largest_skin(periodic), count_) {
     const ProgramStart start = starts_of(program_, rule, body, periodic);
     const RealBondKinds kinds = bonded_ ? bond_kinds_of(program_, start) : RealBondKinds();
@@ -140,6 +140,8 @@ class RealRoundsEngine final : public RealRounds {
 
   std::vector<uint64_t> memory() const override {
     std::vector<uint64_t> words;
+    put<double>(words, {space_.low[0], space_.low[1], space_.low[2], space_.length[0], space_.length[1],
+                        space_.length[2]});
     const std::vector<uint32_t> ids = this->ids();
     for (const auto* of : {&state().x, &listed_x_})
       for (const Array<int64_t>& axis : *of) put(words, by_id(axis.host(stream_, 0, axis.size()), ids));
@@ -182,6 +184,13 @@ class RealRoundsEngine final : public RealRounds {
   const Copy& state() const { return copies_[at_]; }
   std::vector<uint32_t> ids() const { return copies_[who_].id.host(stream_, 0, count_); }
 
+  // That of the run's begin.
+  RealSpace space_of(const Body& body, const Periodic& periodic, const Memory& memory) const {
+    if (memory.words.empty()) return RealSpace(body, periodic, program_.reach, kWide);
+    std::span<const uint64_t> words = memory.words;
+    const auto of = take<double>(words, 6);
+    return RealSpace({of[0], of[1], of[2]}, {of[3], of[4], of[5]}, periodic, program_.reach, kWide);
+  }
   double largest_skin(const Periodic& periodic) const {
     double skin = program_.reach;
     for (const double extent : periodic.extent)
@@ -333,6 +342,7 @@ class RealRoundsEngine final : public RealRounds {
   }
 
   void restore(std::span<const uint64_t> words) {
+    take<double>(words, 6);
     std::array<std::vector<int64_t>, 3> x, listed;
     for (auto& axis : x) axis = take<int64_t>(words, count_);
     for (auto& axis : listed) axis = take<int64_t>(words, bonded_ ? 0 : count_);

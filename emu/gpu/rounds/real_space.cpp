@@ -18,18 +18,30 @@ constexpr double kRoom = 64;
 // rounding of a reach.
 constexpr int kReachBits = 28;
 
+Vec3 lowest(const Body& body) {
+  Vec3 low = body.x[0];
+  for (const Vec3& x : body.x) low = low.cwiseMin(x);
+  return low;
+}
+Vec3 highest(const Body& body) {
+  Vec3 high = body.x[0];
+  for (const Vec3& x : body.x) high = high.cwiseMax(x);
+  return high;
+}
+
 }  // namespace
 
-RealSpace::RealSpace(const Body& body, const Periodic& periodic, double reach, bool wide) {
+RealSpace::RealSpace(const Body& body, const Periodic& periodic, double reach, bool wide)
+    : RealSpace(lowest(body), (highest(body) - lowest(body)).cwiseMax(reach), periodic, reach, wide) {}
+
+RealSpace::RealSpace(const Vec3& from, const Vec3& extent, const Periodic& periodic, double reach, bool wide)
+    : low(from), length(extent) {
   CellList(reach, periodic);  // refuses a box in which pairs meet twice
-  Vec3 first = body.x[0], last = body.x[0];
-  for (const Vec3& x : body.x) first = first.cwiseMin(x), last = last.cwiseMax(x);
   for (size_t a = 0; a < 3; ++a) {
     const auto axis = static_cast<int>(a);
     wraps[a] = periodic.extent[axis] > 0;
-    ring[a].spare = wraps[a] ? kBoxBits : 0;
-    low[axis] = wraps[a] ? periodic.origin[axis] : first[axis];
-    length[axis] = wraps[a] ? periodic.extent[axis] : std::max(last[axis] - first[axis], reach);
+    ring[a] = {wraps[a] ? kBoxBits : 0, 0};
+    if (wraps[a]) low[axis] = periodic.origin[axis], length[axis] = periodic.extent[axis];
     origin[axis] = wraps[a] ? low[axis] : low[axis] + length[axis] / 2;
     const double around = wraps[a] ? length[axis] : kRoom * std::max(length[axis], 16 * reach);
     unit[axis] = std::ldexp(around, ring[a].spare - 64);

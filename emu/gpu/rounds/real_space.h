@@ -17,8 +17,10 @@ struct RealSpace {
   std::array<RealRing, 3> ring{};
   std::array<int64_t, 3> bound{};  // of x, on both sides of 0
 
-  // `wide`: places have 64 bits. InputError where a periodic extent is below two reaches.
+  // Of the body, or `low` and `length` of an earlier one. `wide`: places have 64 bits. InputError where a
+  // periodic extent is below two reaches.
   RealSpace(const Body& body, const Periodic& periodic, double reach, bool wide);
+  RealSpace(const Vec3& low, const Vec3& length, const Periodic& periodic, double reach, bool wide);
 
   int64_t whole(double x, size_t axis) const;
   double metres(int64_t x, size_t axis) const;
