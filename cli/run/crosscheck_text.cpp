@@ -33,12 +33,15 @@ struct Beside {
                                    {.threads = reference_threads(scene.body.size())})),
         errors(std::in_place, scene.rule, body, scene.periodic, floats) {}
 
-  // As far as the distance from the device's run has a bound that tells something.
+  // As far as the distance from the device's run has a bound that tells something: of positions over the
+  // reach, or, where nothing moves, of fields over their largest values.
   void run(uint64_t most, double told) {
     while (step < most && !interrupted()) {
       ProgramErrors next = *errors;
       next.step(body.x, body.v, step);
-      if (step > 0 && next.position() > told) break;
+      const double error =
+          scene.rule.rounds->text()->still ? next.field_share() : next.position() / scene.rule.cutoff();
+      if (step > 0 && error > told) break;
       errors.emplace(std::move(next));
       reference->step(step++);
       reference->read(body);
@@ -81,7 +84,6 @@ struct Beside {
 
 bool check_fields(Told& told, const Beside& exact, const RealFrame& frame, const std::string& when) {
   const std::vector<std::vector<double>> fields = exact.reference->terms()->shown();
-  const auto& names = exact.scene.rule.rounds->declaration().shown;
   bool within = true;
   size_t at = 0;
   for (const ProgramField& field : exact.scene.rule.rounds->text()->particle) {
@@ -93,8 +95,7 @@ bool check_fields(Told& told, const Beside& exact, const RealFrame& frame, const
       within &= tell(
           told,
           fmt::format("'{}'{} {}", field.name, field.numbers() > 1 ? fmt::format("_{}", "xyz"[k]) : "", when),
-          got, reference, [&](size_t i) { return exact.errors->field(field.first + k, i); },
-          names[at].unit.c_str(), "");
+          got, reference, [&](size_t i) { return exact.errors->field(field.first + k, i); }, "(SI)", "");
     }
     ++at;
   }
@@ -125,7 +126,7 @@ struct TextComparison::Parts {
 TextComparison::TextComparison(const Scene& scene, bool floats, uint64_t steps)
     : parts_(std::make_unique<Parts>(scene, floats)) {
   parts_->first.run(0, 0);
-  parts_->after.run(steps, kRealTold(floats) * scene.rule.cutoff());
+  parts_->after.run(steps, kRealTold(floats));
 }
 TextComparison::~TextComparison() = default;
 

@@ -309,6 +309,18 @@ void ProgramErrors::step(const std::vector<Vec3>& x, const std::vector<Vec3>& v,
   }
 }
 
+double ProgramErrors::field_share() const {
+  double share = 0;
+  for (const ProgramField& field : program_.particle)
+    for (uint32_t k = 0; k < field.numbers(); ++k) {
+      double error = 0, size = 0;
+      for (const Number& number : shown_[field.first + k])
+        error = std::max(error, number.error), size = std::max(size, std::abs(number.value));
+      if (size > 0) share = std::max(share, error / size);
+    }
+  return share;
+}
+
 double ProgramErrors::position() const { return *std::ranges::max_element(off_) * std::sqrt(3.0); }
 
 }  // namespace cuboct

@@ -33,6 +33,8 @@ class ProgramErrors {
   // The step that begins in the reference's state.
   void step(const std::vector<Vec3>& x, const std::vector<Vec3>& v, uint64_t step);
   double position() const;  // m, of any particle
+  // The largest error of a field over its largest value, at the last look or step.
+  double field_share() const;
 
  private:
   struct Number {

@@ -278,12 +278,12 @@ class Rounds {
     }
     text_.source += "}  // namespace cuboct::gpu\n" + kernels;
     text_.tables = std::move(tables_.entries);
-    const auto settled = [](const std::vector<std::optional<int>>& of) {
+    const auto all = [](const std::vector<std::optional<int>>& of) {
       std::vector<int> exponents;
       for (const std::optional<int>& e : of) exponents.push_back(e.value_or(0));
       return exponents;
     };
-    text_.exponents.field = settled(field_), text_.exponents.bond = settled(bond_);
+    text_.exponents.field = all(field_), text_.exponents.bond = all(bond_);
     return std::move(text_);
   }
 
@@ -322,7 +322,12 @@ class Rounds {
         return std::nullopt;
     }
   }
-  int exponent(const RealInput& input) const {
+  // What is read before anything tells its size stands as it is, and is written so, too.
+  static int settled(std::optional<int>& exponent) {
+    if (!exponent) exponent = 0;
+    return *exponent;
+  }
+  int exponent(const RealInput& input) {
     const RealExponents& e = text_.exponents;
     switch (input.source) {
       case RealSource::difference:
@@ -337,9 +342,9 @@ class Rounds {
         return e.mass;
       case RealSource::own_field:
       case RealSource::other_field:
-        return field_[input.index].value_or(0);
+        return settled(field_[input.index]);
       case RealSource::bond_field:
-        return bond_[input.index].value_or(0);
+        return settled(bond_[input.index]);
       case RealSource::sum:
         return sum_[input.index];
       default:
