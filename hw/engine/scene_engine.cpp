@@ -47,7 +47,7 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
   const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
   const bool doubles = row != nullptr && row->here == Here::reference;
   try {
-    return plan_of(scene, arch, row != nullptr && row->any_cells ? Cells::any : Cells::cubes);
+    return plan_of(scene, arch, row != nullptr && row->any_cells ? CellForm::any : CellForm::cubes);
   } catch (const InputError&) {
     if (!doubles || formats_hold(scene, arch)) throw;
     return real_plan_of(scene, arch);
@@ -70,7 +70,7 @@ Plan shared_plan_of(const Scene& scene, const Arch& arch, const std::vector<std:
 std::vector<std::string> engines_to_cross(const Scene& scene, const Arch& arch) {
   if (is_text(scene)) return {"golden", "lattice"};
   if (scene.rule.rounds == nullptr &&
-      with_places(scene, arch, [&] { return cell_edges_of(scene, arch, Cells::any).shape; }) != kCube)
+      with_places(scene, arch, [&] { return cell_edges_of(scene, arch, CellForm::any).shape; }) != kCube)
     return {"golden", "lattice"};
   return {"golden", "lattice", "systemc", "rtl"};
 }

@@ -57,7 +57,7 @@ void add_pairs(Hash& hash, const Rule& rule) {
 
 bool formats_hold(const Scene& scene, const Arch& arch) {
   try {
-    const double edge = cell_edges_of(scene, arch, Cells::cubes).longest;
+    const double edge = cell_edges_of(scene, arch, CellForm::cubes).longest;
     const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
     quantise(scene.rule, edge, chosen.widths, arch.table, chosen.half_unit);
     return true;

@@ -40,7 +40,7 @@ std::optional<CellEdges> edges_by_axis(const Vec3& extent, double least) {
 // A periodic axis must be a ring of whole cells. Cubes: of the shortest edge, not below `least`, that divides
 // every periodic extent; without periodic axes it is `least`. Where there is none, and any cells will do,
 // each periodic axis has an edge of its own, and others have the longest of these.
-CellEdges periodic_edges(const Scene& scene, double least, Cells cells) {
+CellEdges periodic_edges(const Scene& scene, double least, CellForm form) {
   constexpr double kMostInRow = 1e7;
   const Vec3& extent = scene.periodic.extent;
   const double longest = extent.maxCoeff();
@@ -60,7 +60,7 @@ CellEdges periodic_edges(const Scene& scene, double least, Cells cells) {
     }
     if (fits) return edge;
   }
-  if (cells == Cells::any)
+  if (form == CellForm::any)
     if (const std::optional<CellEdges> edges = edges_by_axis(extent, least)) return *edges;
   scene.places.fail(
       causes,
@@ -68,7 +68,7 @@ CellEdges periodic_edges(const Scene& scene, double least, Cells cells) {
           "no cell edge of at least {:.6g} m divides the periodic box {:.6g} x {:.6g} x {:.6g} m into 3 "
           "or more cells per axis",
           least, extent[0], extent[1], extent[2]),
-      cells == Cells::any
+      form == CellForm::any
           ? fmt::format("use a larger box: {:.6g} m or more along each periodic axis", 3 * least)
           : "use a larger box, or one whose sides have a common part; engines golden, lattice and "
             "gpu need no such part");
@@ -187,10 +187,10 @@ void add_program(const RuleProgram& text, const Scene& scene, const Body& begin,
 
 // `see` is given each particle of the initial state once, in the order of ids.
 template <typename See>
-Plan plan_with(const Scene& scene, Arch arch, Cells cells_of, See see, bool programs = false) {
+Plan plan_with(const Scene& scene, Arch arch, CellForm form, See see, bool programs = false) {
   const RuleProgram* text = programs ? text_of(scene.rule) : nullptr;
   if (text == nullptr) refuse_rounds(scene.rule, "a machine");
-  const CellEdges edges = cell_edges_of(scene, arch, cells_of);
+  const CellEdges edges = cell_edges_of(scene, arch, form);
   const double edge = edges.longest;
   // Cells start a quarter of an edge below the packing, so that the planes of an aligned crystal do not lie
   // on faces; along z a flat body's only plane does.
@@ -278,7 +278,7 @@ Particle InitialParticles::operator()(uint32_t id) {
   return fixed_particle(body_, id, plan_.rule, plan_.lattice, plan_.origin);
 }
 
-CellEdges cell_edges_of(const Scene& scene, const Arch& arch, Cells cells) {
+CellEdges cell_edges_of(const Scene& scene, const Arch& arch, CellForm form) {
   // A bond that counts is met among the 27 cells, however it is stretched within its tables.
   const RuleProgram* text = text_of(scene.rule);
   const bool lasting = text != nullptr && text->declaration.bonds == BondRange::reference;
@@ -288,22 +288,22 @@ CellEdges cell_edges_of(const Scene& scene, const Arch& arch, Cells cells) {
         {"node.cell_edge"},
         fmt::format("cell_edge = {:.6g} m is shorter than {}, {:.6g} m", arch.cell_edge,
                     lasting ? "the reach of bonds that stretch by 1/8" : "the pair law's cutoff", cutoff));
-  return periodic_edges(scene, std::max(cutoff, arch.cell_edge), cells);
+  return periodic_edges(scene, std::max(cutoff, arch.cell_edge), form);
 }
 
 Arch settled(const Scene& scene, Arch arch) {
-  arch.widths = auto_widths(scene, cell_edges_of(scene, arch, Cells::any).longest, arch.widths).widths;
+  arch.widths = auto_widths(scene, cell_edges_of(scene, arch, CellForm::any).longest, arch.widths).widths;
   return arch;
 }
 
-Plan plan_of(const Scene& scene, const Arch& arch, Cells cells) {
-  return with_places(scene, arch, [&] { return plan_with(scene, arch, cells, [](const Particle&) {}); });
+Plan plan_of(const Scene& scene, const Arch& arch, CellForm form) {
+  return with_places(scene, arch, [&] { return plan_with(scene, arch, form, [](const Particle&) {}); });
 }
 
 Plan program_plan_of(const Scene& scene, const Arch& arch) {
   return with_places(scene, arch, [&] {
     return plan_with(
-        scene, arch, Cells::any, [](const Particle&) {}, true);
+        scene, arch, CellForm::any, [](const Particle&) {}, true);
   });
 }
 
@@ -311,7 +311,7 @@ Setup make_setup(const Scene& scene, const Arch& arch) {
   State initial;
   initial.particles.reserve(scene.body.size());
   const auto keep = [&](const Particle& particle) { initial.particles.push_back(particle); };
-  Plan plan = with_places(scene, arch, [&] { return plan_with(scene, arch, Cells::cubes, keep); });
+  Plan plan = with_places(scene, arch, [&] { return plan_with(scene, arch, CellForm::cubes, keep); });
   return {std::move(plan), std::move(initial)};
 }
 

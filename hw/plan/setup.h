@@ -32,17 +32,17 @@ Setup make_setup(const Scene& scene, const Arch& arch);
 
 // Nodes of a machine have cubic cells. In a periodic box that no cube divides other engines
 // take cells whose edge differs by axis.
-enum class Cells : uint8_t { cubes, any };
+enum class CellForm : uint8_t { cubes, any };
 
 // A cell's edges, m: the law's cutoff or the arch's, in a box that repeats the next length that divides it.
-CellEdges cell_edges_of(const Scene& scene, const Arch& arch, Cells cells);
+CellEdges cell_edges_of(const Scene& scene, const Arch& arch, CellForm form);
 
 // `arch` with the formats that are automatic settled by this scene, but for the tables' width: for studies
 // that change the scene and mean the same machine.
 Arch settled(const Scene& scene, Arch arch);
 
 // The same plan and errors, without a State in memory.
-Plan plan_of(const Scene& scene, const Arch& arch, Cells cells = Cells::cubes);
+Plan plan_of(const Scene& scene, const Arch& arch, CellForm form = CellForm::cubes);
 
 // Of a rule that is text too: Plan::program has it in integers. No machine is made of such a plan yet.
 Plan program_plan_of(const Scene& scene, const Arch& arch);

@@ -85,8 +85,8 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   const bool leads = program.leads();
   const RoundsRule* rounds = scene.rule.rounds.get();
   const bool text = program.abilities.text && rounds != nullptr && rounds->text() != nullptr;
-  const Cells cells = program.abilities.any_cells ? Cells::any : Cells::cubes;
-  const Plan plan = !text                         ? plan_of(scene, arch, cells)
+  const CellForm form = program.abilities.any_cells ? CellForm::any : CellForm::cubes;
+  const Plan plan = !text                         ? plan_of(scene, arch, form)
                     : program.abilities.real_text ? real_plan_of(scene, arch)
                                                   : program_plan_of(scene, arch);
   settle(program, parsed, scene);

@@ -180,7 +180,7 @@ Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolutio
       if (std::abs(type.gravity[axis]) < 128 * unit) type.gravity[axis] = 0;
   std::optional<Plan> plan;
   try {
-    plan = plan_of(scene, arch, Cells::any);
+    plan = plan_of(scene, arch, CellForm::any);
   } catch (const InputError& error) {
     return {TrialVerdict::refused, parts_of(error).message};
   }

@@ -29,7 +29,8 @@ double ordered_pairs(const Scene& scene) {
 double cost_of(const Case& c) {
   if (c.scene.rule.rounds != nullptr) return kNotMeasured;
   // No node has such a cell.
-  if (c.settings.arithmetic == Arithmetic::fixed && cell_edges_of(c.scene, c.arch, Cells::any).shape != kCube)
+  if (c.settings.arithmetic == Arithmetic::fixed &&
+      cell_edges_of(c.scene, c.arch, CellForm::any).shape != kCube)
     return kNotMeasured;
   const auto transistors = [&] {
     switch (c.settings.arithmetic) {

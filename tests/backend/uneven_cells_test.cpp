@@ -50,7 +50,7 @@ double off_by(const Scene& scene, int difference_frac) {
   arch.widths.position_frac = difference_frac + 6;
   arch.table.degree = 2;
   arch.table.index_bits = 12;
-  const Plan plan = plan_of(scene, arch, Cells::any);
+  const Plan plan = plan_of(scene, arch, CellForm::any);
   EXPECT_FALSE(plan.rule.cubic());
   Golden golden(plan.rule, plan.lattice, plan.arch.capacity,
                 to_fixed(scene.body, plan.rule, plan.lattice, plan.origin));
@@ -74,7 +74,7 @@ TEST(UnevenCells, FinerIntegersComeNearerToDoubles) {
 
 TEST(UnevenCells, MomentumIsKeptAndTimeRunsBack) {
   const Scene scene = warm_block(1.6, 1e-3);
-  const Plan plan = plan_of(scene, {}, Cells::any);
+  const Plan plan = plan_of(scene, {}, CellForm::any);
   const State begin = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
   const auto kick_back = [](State state) {
     for (Particle& p : state.particles)
@@ -99,7 +99,7 @@ TEST(UnevenCells, MomentumIsKeptAndTimeRunsBack) {
 // What is measured of integers is what the doubles have: energies, the box's stress, velocities.
 TEST(UnevenCells, EnergiesAndStressAreThoseOfDoubles) {
   const Scene scene = warm_block(1.6, 1e-4);
-  const Plan plan = plan_of(scene, {}, Cells::any);
+  const Plan plan = plan_of(scene, {}, CellForm::any);
   const State state = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
   const double volume = scene.periodic.extent.prod();
   const std::vector<Int3> kicks = summed_kicks(plan.rule, plan.lattice, state);
@@ -135,7 +135,7 @@ TEST(UnevenCells, MachinesRefuseThem) {
       "golden, lattice and gpu need no such part");
   Scene small = warm_block(1.6, 1e-3);
   small.periodic.extent[1] = 4.5;
-  EXPECT_EQ(refused_with([&] { plan_of(small, {}, Cells::any); }),
+  EXPECT_EQ(refused_with([&] { plan_of(small, {}, CellForm::any); }),
             "no cell edge of at least 1.6 m divides the periodic box 7.07107 x 4.5 x 8.48528 m into 3 or "
             "more cells "
             "per axis\n  hint: use a larger box: 4.8 m or more along each periodic axis");
@@ -156,7 +156,7 @@ TEST(UnevenCells, NobodyMeetsBeyondANeighbouringCell) {
     scene.body.x = {Vec3(2.5 - unit, 4, 4.5), Vec3(5 + at * unit, 4, 4.5)};
     Arch arch;
     arch.widths.difference_frac = 16, arch.widths.position_frac = 20;
-    Plan plan = plan_of(scene, arch, Cells::any);
+    Plan plan = plan_of(scene, arch, CellForm::any);
     ASSERT_FALSE(plan.rule.cubic());
     ASSERT_EQ(plan.rule.edges()[0], 2.5);
     State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
@@ -169,8 +169,8 @@ TEST(UnevenCells, NobodyMeetsBeyondANeighbouringCell) {
 // Where a cube divides the box cells are cubes, as on machines.
 TEST(UnevenCells, CubesGoBefore) {
   const Scene scene = warm_block(1.4, 1e-3);
-  EXPECT_TRUE(plan_of(scene, {}, Cells::any).rule.cubic());
-  EXPECT_EQ(plan_of(scene, {}, Cells::any).hash, plan_of(scene, {}).hash);
+  EXPECT_TRUE(plan_of(scene, {}, CellForm::any).rule.cubic());
+  EXPECT_EQ(plan_of(scene, {}, CellForm::any).hash, plan_of(scene, {}).hash);
 }
 
 }  // namespace

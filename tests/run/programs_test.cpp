@@ -292,7 +292,7 @@ TEST_P(TextPrograms, PairLawsInCellsThatAreNoCubes) {
       "velocity = [ { thermal_energy = 1.5, seed = 2 } ]\nrun = { dt = 0.004, steps = 20, energy_every = 10 "
       "}\n",
       "lj.toml");
-  bed.plan = plan_of(bed.scene, {}, Cells::any);
+  bed.plan = plan_of(bed.scene, {}, CellForm::any);
   bed.one_thread.engine.threads = 1, bed.two_threads.engine.threads = 2;
   ASSERT_FALSE(bed.plan.rule.cubic());
   RunRequest request;

@@ -413,7 +413,7 @@ Case uneven_case(uint64_t seed) {
   arch.capacity = 60;
   arch.table.degree = dice.draw(1, 2);
   if (!f.masses && dice.chance(40)) arch.widths.difference_frac = 24, arch.widths.position_frac = 28;
-  Plan plan = plan_of(scene, arch, Cells::any);
+  Plan plan = plan_of(scene, arch, CellForm::any);
   State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
   return {"uneven_" + std::to_string(seed), {std::move(plan), std::move(initial)}, 20, std::move(scene)};
 }
