@@ -41,7 +41,7 @@ struct Beside {
       next.step(body.x, body.v, step);
       const double error =
           scene.rule.rounds->text()->still ? next.field_share() : next.position() / scene.rule.cutoff();
-      if (step > 0 && error > told) break;
+      if (step > 0 && !(error <= told)) break;
       errors.emplace(std::move(next));
       reference->step(step++);
       reference->read(body);
@@ -146,7 +146,7 @@ bool TextComparison::compare(Told& told, const std::vector<RealFrame>& frames) c
     within &= check_fields(told, after, frame, when);
   }
   Beside there(scene, floats);
-  if (last.step > after.step && there.place(last))
+  if (last.step > 0 && there.place(last))
     within &= check_state(told, there, last, fmt::format("after {} steps", last.step));
   return within;
 }

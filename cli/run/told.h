@@ -29,10 +29,11 @@ template <class Bound>
 bool tell(Told& told, const std::string& what, const std::vector<Vec3>& got, const std::vector<Vec3>& exact,
           Bound bound, const char* unit, const std::string& more) {
   double worst = -1, most = 0;
-  size_t at = 0;
+  size_t at = 0, unbounded = 0;
   for (size_t i = 0; i < got.size(); ++i) {
-    const double error = (got[i] - exact[i]).norm();
-    const double share = error > 0 || std::isnan(error) ? error / bound(i) : 0;
+    const double error = (got[i] - exact[i]).norm(), limit = bound(i);
+    unbounded += !std::isfinite(limit);
+    const double share = error > 0 || std::isnan(error) ? error / limit : 0;
     most = std::max(most, error);
     if (share > worst || std::isnan(share)) worst = share, at = i;
     if (std::isnan(share)) break;
@@ -46,6 +47,11 @@ bool tell(Told& told, const std::string& what, const std::vector<Vec3>& got, con
   items.add("bound", double{bound(at)});
   told.answer.say("{}: largest error {:.3g} {}{}; nearest to its bound: particle {}, {:.3g} of {:.3g} {}\n",
                   what, most, unit, more, at, (got[at] - exact[at]).norm(), bound(at), unit);
+  if (unbounded > 0) {
+    items.add("without_bound", uint64_t{unbounded});
+    told.answer.say("{}: {} of {} particles have no bound\n", what, unbounded, got.size());
+    if (unbounded == got.size()) return false;
+  }
   if (worst <= 1) return true;
   told.answer.say(
       "beyond its bound: particle {} has ({:.9g}, {:.9g}, {:.9g}) {}, the reference ({:.9g}, {:.9g}, "

@@ -79,6 +79,7 @@ void TextRun::advance(uint64_t steps, std::vector<uint64_t>*) {
 void TextRun::tell(const std::string& why) {
   const auto stop = [&](const std::string& text) { return StepError({Fault::none, step_, 0, 0, 0, text}); };
   body();
+  stale_ = true;  // the engine goes a step ahead
   try {
     engine_->step(step_);
   } catch (const std::runtime_error& error) {

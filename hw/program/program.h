@@ -27,11 +27,11 @@ struct ProgramOptions {
 struct ProgramAbilities {
   bool cycles = false;  // --cycles; where `always_cycles`, phase times come without asking
   bool always_cycles = false;
-  bool forces = false;          // --forces
-  bool checkpoints = false;     // --checkpoint, --checkpoint-every, --resume
-  bool text = false;            // rules that are text
-  bool any_cells = false;       // a pair law in cells that are no cubes
-  bool real_text = false;       // those in real numbers, as the options say: no integers need hold them
+  bool forces = false;       // --forces
+  bool checkpoints = false;  // --checkpoint, --checkpoint-every, --resume
+  bool text = false;         // rules that are text
+  bool any_cells = false;    // a pair law in cells that are no cubes
+  bool real_text = false;    // rules of text in real numbers, as the options say: no integers need hold them
   uint64_t steps = UINT64_MAX;  // that a machine can count
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "model/graph/noise.h"
@@ -43,6 +44,7 @@ ProgramErrors::ProgramErrors(const Rule& rule, const Body& body, const Periodic&
       floats_(floats),
       u_(std::ldexp(1.0, floats ? -24 : -53)),
       both_(u_ + std::ldexp(1.0, -53)),
+      least_(floats ? std::numeric_limits<float>::denorm_min() : 0),
       type_(body.type),
       packed_at_(body.bonds ? body.bonds->packed : body.x),
       off_(body.size()),
@@ -54,7 +56,10 @@ ProgramErrors::ProgramErrors(const Rule& rule, const Body& body, const Periodic&
   // A position's unit is less than the rounding of the reference's coordinate, a double. Places of 32 bits
   // have units of 2^-28 of a reach.
   const double extent = largest(body.x) + periodic.extent.maxCoeff() + 16 * program_.reach;
+  extent_ = extent;
   unit_ = std::ldexp(extent, -53);
+  for (size_t i = 0; i < body.v.size(); ++i) fast_[i] = u_ * body.v[i].norm();
+  for (size_t i = 0; i < body.u.size(); ++i) away_[i] = u_ * body.u[i].norm();
   places_ = 4 * unit_ + (floats && !bonded ? std::ldexp(program_.reach, -28) : 0);
   const ProgramStart start = starts_of(program_, rule, body, periodic);
   bonds_ = start.rows;
@@ -117,7 +122,8 @@ ProgramErrors::Number ProgramErrors::input(const RealInput& input, const Pair& p
     case RealSource::bond_field:
       return bond_[input.index][pair.bond];
     case RealSource::position:
-      return {x_[pair.i][axis], off_[pair.i] + 4 * u_ * std::abs(x_[pair.i][axis])};
+      // The device has it from where its space begins.
+      return {x_[pair.i][axis], off_[pair.i] + 4 * u_ * (std::abs(x_[pair.i][axis]) + extent_)};
     case RealSource::sum:
       return sums[input.index];
     case RealSource::time_step:
@@ -177,7 +183,7 @@ ProgramErrors::Number ProgramErrors::result(const RealNode& node, const Numbers&
                                         : std::sqrt(std::max(a.value, 0.0) + a.error),
                   kRoot);
     case RealOp::exponential:
-      return told(r * std::expm1(a.error), kFunction);
+      return told(r * std::expm1(a.error) + least_, kFunction);
     case RealOp::logarithm:
       return told(a.error / std::max(a.value - a.error, 0.0), kFunction);
     case RealOp::sine:
@@ -185,11 +191,16 @@ ProgramErrors::Number ProgramErrors::result(const RealNode& node, const Numbers&
       return {r, a.error + kFunction * both_};
     case RealOp::error_function: {
       const double least = std::max(std::abs(a.value) - a.error, 0.0);
-      return told(2 * std::numbers::inv_sqrtpi * std::exp(-least * least) * a.error, kErrorFunction);
+      return told(2 * std::numbers::inv_sqrtpi * std::exp(-least * least) * a.error + least_, kErrorFunction);
     }
-    case RealOp::power:
-      return told(std::abs(b.value * r / a.value) * a.error + std::abs(r * std::log(a.value)) * b.error,
-                  kPower);
+    case RealOp::power: {
+      // Between both ends of its argument; an exponent is a constant.
+      const double low = std::max(a.value - a.error, 0.0), high = a.value + a.error;
+      const double by_base =
+          std::max(std::abs(std::pow(low, b.value) - r), std::abs(std::pow(high, b.value) - r));
+      const double by_exponent = r != 0 ? std::abs(r * std::log(a.value)) * b.error : 0;
+      return told(by_base + by_exponent, kPower);
+    }
     case RealOp::negate:
     case RealOp::absolute:
       return told(a.error, 0);

@@ -60,6 +60,8 @@ class ProgramErrors {
   const RuleProgram& program_;
   bool floats_;
   double u_, both_;       // half an ulp of 1, of the device's numbers, and with that of doubles
+  double least_;          // the least of the device's numbers above 0: what is less becomes 0
+  double extent_ = 0;     // m, of all coordinates
   double unit_, places_;  // m, of a position; of a difference of two
   double grain_ = 0;
   std::vector<uint8_t> type_;

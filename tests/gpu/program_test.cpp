@@ -467,7 +467,7 @@ TEST_F(GpuProgram, OfARuleOfTextIsWithinBoundsOfTheReference) {
       const Answer answer = crosscheck(of, precision);
       EXPECT_EQ(answer.code, 0) << answer.out << answer.err;
       EXPECT_NE(lines_with(answer.out, "at the start: largest error "), "");
-      EXPECT_NE(lines_with(answer.out, "after 30 steps: largest error "), "");
+      EXPECT_NE(lines_with(answer.out, " after 30 steps: largest error "), "");
       EXPECT_NE(
           lines_with(answer.out, " particles over 30 steps, gpu in " + precision + "s against the reference"),
           "");

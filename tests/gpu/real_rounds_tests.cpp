@@ -8,6 +8,7 @@
 
 #include "emu/gpu/rounds/nvrtc.h"
 #include "emu/gpu/rounds/real_rounds_engine.h"
+#include "emu/gpu/rounds/real_space.h"
 #include "emu/gpu/rounds/scaled_graph.h"
 #include "model/program/program_errors.h"
 #include "model/real/real_engine.h"
@@ -60,7 +61,8 @@ struct Beside {
     const std::vector<Vec3> force = reference->forces();
     double worst = 0;
     const auto see = [&](double off, double bound) {
-      worst = std::isnan(off) ? 1e300 : std::max(worst, off > 0 ? off / bound : 0);
+      const bool told = !std::isnan(off) && std::isfinite(bound);
+      worst = told ? std::max(worst, off > 0 ? off / bound : 0) : 1e300;
     };
     for (size_t i = 0; i < body.size(); ++i) {
       see((here.x[i] - body.x[i]).norm(), errors.position());
@@ -188,6 +190,37 @@ TEST(RealRounds, TellsWhereAPositionIsLost) {
                                             host_compiler("real_langevin"));
   EXPECT_EQ(refused_with<gpu::LostPosition>([&] { device->advance(5); }),
             "step 1: a position leaves all bounds; before it particle 7 was the fastest, at 1e+09 m/s");
+}
+
+// Places of 32 bits have equal ones 8 to 16 reaches apart. An atom that flies off as far meets nobody again.
+// The 14th power of a length is no float in SI units.
+TEST(RealRounds, FloatsKnowWhoIsFar) {
+  Scene scene = parse_scene(
+      "mass = \"40 u\"\npacking = { pitch = \"4 angstrom\" }\nrun = { dt = \"1 fs\", steps = 20 }\n"
+      "geometry = { shape = \"box\", min = \"[0, 0, 0] angstrom\", max = \"[9, 9, 9] angstrom\" }\n"
+      "[[particle]]\nposition = \"[0, 0, 20] angstrom\"\n[rule]\nname = \"argon\"\nreach = \"5 angstrom\"\n"
+      "parameters = { depth = \"10 meV\", size = \"3.4 angstrom\" }\n[[rule.round]]\nsum.force = "
+      "\"-48 * depth * (size^12 / r^14 - size^6 / r^8 / 2) * d\"\n",
+      "far.toml");
+  const size_t flyer = scene.body.size() - 1;
+  double top = 0;  // of those below
+  for (size_t i = 0; i < flyer; ++i)
+    if (scene.body.x[i].head<2>().norm() < 1e-11) top = std::max(top, scene.body.x[i].z());
+  const double reach = scene.rule.cutoff();
+  const gpu::RealSpace space(scene.body, scene.periodic, reach, false);
+  const double again = std::ldexp(space.place_unit(2), 32);
+  constexpr int kSteps = 12;
+  scene.body.v[flyer].z() = (top + again + 0.8 * reach - scene.body.x[flyer].z()) / (kSteps * scene.rule.dt);
+  Beside beside(scene, false, host_compiler("real_far"));
+  EXPECT_LT(beside.worst(), 1);
+  EXPECT_GT(beside.device->look().force[0].norm(), 1e-14);
+  for (int k = 0; k < kSteps; ++k) {
+    beside.step();
+    EXPECT_EQ(beside.device->look().force[flyer].norm(), 0) << k;
+  }
+  Body body = beside.body;
+  beside.device->read(body);
+  EXPECT_NEAR(body.x[flyer].z(), top + again + 0.8 * reach, 0.1 * reach);
 }
 
 TEST(RealRounds, RefusesWhatItCannotDo) {

@@ -170,7 +170,7 @@ steps = 2
   EXPECT_EQ(refused_as(scene, guard), "accepted");
   // Velocities that are too fine for a table of 18 bits.
   const Scene bar = parse_scene(moved_at("[1, 0, 0] m/s") + kForTwoSteps, "scene.toml");
-  const double edge = cell_edge_of(bar, Arch{});
+  const double edge = cell_edges_of(bar, Arch{}, CellForm::cubes).longest;
   const auto said = [&](const Widths& widths) -> std::string {
     return refused_with([&] { quantise(bar.rule, edge, widths, {}); });
   };

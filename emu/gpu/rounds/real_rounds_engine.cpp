@@ -143,8 +143,10 @@ class RealRoundsEngine final : public RealRounds {
     put<double>(words, {space_.low[0], space_.low[1], space_.low[2], space_.length[0], space_.length[1],
                         space_.length[2]});
     const std::vector<uint32_t> ids = this->ids();
-    for (const auto* of : {&state().x, &listed_x_})
-      for (const Array<int64_t>& axis : *of) put(words, by_id(axis.host(stream_, 0, axis.size()), ids));
+    for (const Array<int64_t>& axis : state().x) put(words, by_id(axis.host(stream_, 0, axis.size()), ids));
+    // Before the first list there is none.
+    for (const Array<int64_t>& axis : listed_x_)
+      put(words, listed_ ? by_id(axis.host(stream_, 0, axis.size()), ids) : std::vector<int64_t>(count_));
     put(words, by_id(state().v.host(stream_, 0, count_), ids));
     for (const Array<Real>& axis : state().u) put(words, by_id(axis.host(stream_, 0, axis.size()), ids));
     put<Skin::Memory>(words, {skin_.memory()});
@@ -443,7 +445,6 @@ class RealRoundsEngine final : public RealRounds {
     const Copy& here = state();
     RealMakeList<Real, Number> make{bins,
                                     {here.x[0].data(), here.x[1].data(), here.x[2].data()},
-                                    here.place.data(),
                                     {frame_.unit[0], frame_.unit[1], frame_.unit[2]},
                                     square((program_.reach + skin_.now()) * (1 + kRounding)),
                                     bin_first_.data(),

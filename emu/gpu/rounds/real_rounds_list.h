@@ -88,13 +88,19 @@ template <class Real, class Number>
 struct RealMakeList {
   RealBins bins;
   const int64_t* x[3];
-  const RealPlace<Number>* place;
-  Real unit[3];
+  Real unit[3];  // of a place
   Real reach2;
   const uint32_t *first, *count;
   uint32_t *entries, *counts;
   uint32_t width;
   size_t stride;
+
+  // Of the nearest image, in places: whole, as those of 32 bits have equal ones 8 to 16 reaches apart, and
+  // who is outside the body as it began stands in a bin of its border.
+  CUBOCT_DEVICE int64_t apart(uint32_t i, uint32_t j, int a) const {
+    const uint64_t d = static_cast<uint64_t>(x[a][j]) - static_cast<uint64_t>(x[a][i]);
+    return static_cast<int64_t>(d << bins.ring[a].spare) >> bins.ring[a].drop;
+  }
 
   CUBOCT_DEVICE uint32_t operator()(uint32_t i) const {
     int home[3], from[3], to[3];
@@ -104,7 +110,6 @@ struct RealMakeList {
       from[a] = bins.wraps[a] && bins.count[a] < 3 ? 0 : -1;
       to[a] = bins.wraps[a] && bins.count[a] < 3 ? bins.count[a] - 1 : 1;
     }
-    const RealPlace<Number> here = place[i];
     uint32_t found = 0;
     for (int z = from[2]; z <= to[2]; ++z)
       for (int y = from[1]; y <= to[1]; ++y)
@@ -121,10 +126,9 @@ struct RealMakeList {
           const uint32_t at = bins.of(bin), end = first[at] + count[at];
           for (uint32_t j = first[at]; j < end; ++j) {
             if (j == i) continue;
-            const RealPlace<Number> other = place[j];
             Real square = 0;
             for (int a = 0; a < 3; ++a) {
-              const Real d = static_cast<Real>(signed_of(other.x[a] - here.x[a])) * unit[a];
+              const Real d = static_cast<Real>(apart(i, j, a)) * unit[a];
               square += d * d;
             }
             if (square > reach2) continue;

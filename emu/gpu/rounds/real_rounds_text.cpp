@@ -98,6 +98,15 @@ class Printer {
   }
   std::string value(NodeId id) const { return value(id, graph_.at(id).exponent); }
 
+  // The power of the number beside its own two's power, which becomes the result's but for a factor below 2.
+  std::string powered(const ScaledNode& node) const {
+    const int exponent = graph_.at(node.of[0]).exponent;
+    const double power = graph_.at(node.of[1]).value;
+    const double left = std::exp2(exponent * power - power_exponent(exponent, power));
+    const std::string text = fmt::format("pow({}, {})", value(node.of[0]), value(node.of[1], 0));
+    return left == 1 ? text : fmt::format("{} * {}", text, literal(left, 0));
+  }
+
   // Of the nodes of a scope, in their order. `carried`: those of the particle stand in `own`.
   std::string statements(RealScope scope, bool carried) {
     carried_ = carried;
@@ -158,7 +167,7 @@ class Printer {
       case RealOp::error_function:
         return fmt::format("erfc({})", at(0, 0));
       case RealOp::power:
-        return fmt::format("pow({}, {})", at(0, 0), at(1, 0));
+        return powered(node);
       case RealOp::absolute:
         return fmt::format("abs({})", of(0));
       case RealOp::least:  // std::min's and std::max's, of what is no number too

@@ -634,11 +634,7 @@ class RoundsEngine final : public IntegerEngine {
 std::unique_ptr<IntegerEngine> make_rounds_engine(const Plan& plan, const State& initial,
                                                   const Options& options, const CompileRounds& compile) {
   if (options.devices.size() > 1)
-    throw InputError(
-        "what runs as a program runs on one GPU: a rule of text, and a pair law in a box that no cube "
-        "divides",
-        "--gpus 1")
-        .about({"rule.file", "rule"});
+    throw InputError("a rule of text runs on one GPU", "--gpus 1").about({"rule.file", "rule"});
   return std::make_unique<RoundsEngine>(plan, initial, options, compile);
 }
 

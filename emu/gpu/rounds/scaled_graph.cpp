@@ -138,6 +138,8 @@ class Scaling {
         return of(0);
       case RealOp::square_root:
         return even(of(0)) / 2;
+      case RealOp::power:
+        return power_exponent(of(0), at(node.of[1]).value);
       case RealOp::curve:
         return value_exponent(*node.table);
       case RealOp::curve_slope:
@@ -158,6 +160,8 @@ class Scaling {
 }  // namespace
 
 int exponent_of(double value) { return value == 0 || !std::isfinite(value) ? 0 : std::ilogb(value); }
+
+int power_exponent(int exponent, double power) { return static_cast<int>(std::lround(exponent * power)); }
 
 int value_exponent(const TableCurve& table) {
   const auto [low, high] = table.range(false);

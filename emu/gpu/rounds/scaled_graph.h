@@ -45,6 +45,8 @@ struct RealInputs {
 
 // floor(log2 |value|); 0 of 0 and of what is not finite.
 int exponent_of(double value);
+// Of what has this exponent, to a power.
+int power_exponent(int exponent, double power);
 // Of a table's values, and of the arguments in which its entries count.
 int value_exponent(const TableCurve& table);
 int argument_exponent(const TableCurve& table);
