@@ -310,7 +310,7 @@ struct Interpreted {
   }
 };
 
-// A block of threads. Its memory holds the threads' registers, their sums, and the image of their code.
+// A block of threads. Its memory holds the threads' registers, the image of their code, and their sums.
 template <bool Bonded>
 struct InterpretedBlock {
   RoundsStep<Interpreted<Bonded>> step;
