@@ -561,7 +561,7 @@ class RealRoundsEngine final : public RealRounds {
 
   // The state is that before the step that cannot be.
   [[noreturn]] void fail(const RealControl& control) const {
-    if (control.beyond < control.lost) throw TableEnds(table_ends_text(step_ + 1));
+    if (control.beyond <= control.lost) throw TableEnds(table_ends_text(step_ + 1));
     Body body;
     body.x.resize(count_), body.v.resize(count_), body.u.resize(count_);
     read(body);

@@ -125,7 +125,8 @@ struct RealFrame {
   RealControl* control;
 
   CUBOCT_DEVICE bool idle() const {
-    return control->lost <= number || control->beyond <= number || control->old < number;
+    // A step that fails runs to its end, so that all of it is told whatever the order of threads.
+    return control->lost < number || control->beyond < number || control->old < number;
   }
   CUBOCT_DEVICE Real made() const { return force[0] == nullptr ? Real(1) : Real(0); }
   CUBOCT_DEVICE Real noise(int64_t stream, uint32_t a, uint32_t b) const {
