@@ -13,22 +13,16 @@
 #include "model/program/program_errors.h"
 #include "model/real/real_engine.h"
 #include "model/rules/rounds_rule.h"
+#include "model/run/rounds_run.h"
 
 namespace cuboct {
 namespace {
-
-Body begin_of(const Scene& scene) {
-  Body body = with_bonds(scene.rule, scene.body, scene.body);
-  if (std::ranges::any_of(scene.rule.types, &ParticleType::pd) && body.u.empty())
-    body.u.assign(body.size(), Vec3::Zero());
-  return body;
-}
 
 // The reference and the bounds of the device's errors, side by side.
 struct Beside {
   Beside(const Scene& scene, bool floats)
       : scene(scene),
-        body(begin_of(scene)),
+        body(completed(scene, scene.body)),
         reference(make_real_engine(scene.rule, body, scene.periodic,
                                    {.threads = reference_threads(scene.body.size())})),
         errors(std::in_place, scene.rule, body, scene.periodic, floats) {}

@@ -59,11 +59,6 @@ class Runner : public cuboct::Engine {
   uint64_t builds_before_ = 0, golden_before_ = 0;  // of the runs before this one, up to the checkpoint
 };
 
-[[noreturn]] void refuse_another(const CheckpointReader& from) {
-  throw InputError(fmt::format("{} was made with another engine or --precision", from.path()),
-                   "resume with the options of the run that wrote it");
-}
-
 void Runner::begin_fixed(CheckpointReader* from) {
   const State initial = begin_of(scene_, plan_, from);
   momentum_.fixed = cuboct::momentum(plan_.rule, initial);
@@ -293,6 +288,11 @@ std::unique_ptr<cuboct::Engine> run_of_text(const Scene& scene, const Plan& plan
 }
 
 }  // namespace
+
+void refuse_another(const CheckpointReader& from) {
+  throw InputError(fmt::format("{} was made with another engine or --precision", from.path()),
+                   "resume with the options of the run that wrote it");
+}
 
 CompileRounds rounds_compiler(bool interpret) {
   if (interpret) return {};

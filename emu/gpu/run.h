@@ -28,6 +28,9 @@ struct GpuChoice {
 // Of rules of text, with its code where cuboct keeps what it can make again; none: they are interpreted.
 CompileRounds rounds_compiler(bool interpret);
 
+// InputError of a checkpoint that the run cannot go on from.
+[[noreturn]] void refuse_another(const CheckpointReader& from);
+
 // `plan` is the scene's. References are kept.
 // Counters of the trace: the engine's own (Counters) and those of the hooks.
 EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choice);

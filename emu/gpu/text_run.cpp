@@ -37,8 +37,7 @@ std::unique_ptr<TextRun> TextRun::make(const Scene& scene, double cell_edge, con
   const EngineMemory& kept = from->head().engine;
   if (kept.own.empty() || kept.counters.size() != 2 ||
       kept.counters[1] != static_cast<uint64_t>(choice.arithmetic))
-    throw InputError(fmt::format("{} was made with another engine or --precision", from->path()),
-                     "resume with the options of the run that wrote it");
+    refuse_another(*from);
   try {
     return made(cuboct::saved_body(*from, scene.rule, scene.body, Precision::float64),
                 {from->head().step, kept.own});

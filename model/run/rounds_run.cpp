@@ -17,20 +17,19 @@
 namespace cuboct {
 namespace {
 
-// With the displacements from anchors that the rule counts, where the body has none yet.
-Body completed(const Scene& scene, const Body& start) {
-  Body body = with_bonds(scene.rule, start, start);
-  const bool pd = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
-  if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
-  return body;
-}
-
 RealOptions from_step(RealOptions options, uint64_t step) {
   options.first_step = step;
   return options;
 }
 
 }  // namespace
+
+Body completed(const Scene& scene, const Body& start) {
+  Body body = with_bonds(scene.rule, start, start);
+  const bool pd = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
+  if (pd && body.u.empty()) body.u.assign(body.size(), Vec3::Zero());
+  return body;
+}
 
 RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
                      uint64_t step)

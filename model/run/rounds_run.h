@@ -62,6 +62,9 @@ class RoundsRun : public Engine {
   double cell_edge_;
 };
 
+// As engines of rounds begin: with bonds, and displacements from anchors where some type is held by force.
+Body completed(const Scene& scene, const Body& start);
+
 // From `start` instead of the scene's body.
 EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge);
 

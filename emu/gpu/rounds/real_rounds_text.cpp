@@ -126,7 +126,6 @@ class Printer {
   std::string expression(const ScaledNode& node) const {
     const auto of = [&](size_t k) { return value(node.of[k]); };
     const auto at = [&](size_t k, int exponent) { return value(node.of[k], exponent); };
-    const auto even = [](int exponent) { return exponent - (exponent & 1); };
     const auto both = [&](const char* format) {
       const int e = graph_.common(node.of[0], node.of[1]);
       return fmt::format(fmt::runtime(format), at(0, e), at(1, e));

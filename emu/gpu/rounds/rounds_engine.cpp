@@ -363,16 +363,8 @@ class RoundsEngine final : public IntegerEngine {
                         counts_.data(),
                         width_,
                         count_};
-    for (;;) {
-      most_.zero(stream_);
-      make.entries = entries_.data(), make.width = width_;
-      max_each(stream_, 0, count_, block_, make, most_.data());
-      const uint32_t most = most_.host(stream_, 0, 1)[0];
-      longest_ = std::max<uint64_t>(longest_, most);
-      if (most <= width_) break;
-      width_ = (most + 7) / 8 * 8;
-      entries_.resize(size_t{width_} * count_);
-    }
+    longest_ =
+        std::max<uint64_t>(longest_, fill_list(stream_, count_, block_, make, most_, entries_, width_));
     near_entries_.resize(entries_.size());
     listed_pairs_ = mean_of(counts_);
     skin_.listed(listed_pairs_);

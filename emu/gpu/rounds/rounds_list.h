@@ -3,6 +3,7 @@
 // wider, and cover the lattice's box; where the box repeats they do, too.
 #pragma once
 
+#include "emu/gpu/device/storage.h"
 #include "emu/gpu/rounds/rounds_kernel.h"
 
 namespace cuboct::gpu {
@@ -164,6 +165,21 @@ struct RoundsZero {
   uint64_t* sum;
   CUBOCT_DEVICE void operator()(uint32_t) const { *sum = 0; }
 };
+
+// Runs a kernel that makes a list until the rows hold all that it found. The most partners of a particle.
+template <class Make>
+uint32_t fill_list(Stream& stream, uint32_t count, int block, Make make, Array<uint32_t>& most,
+                   Array<uint32_t>& entries, uint32_t& width) {
+  for (;;) {
+    most.zero(stream);
+    make.entries = entries.data(), make.width = width;
+    max_each(stream, 0, count, block, make, most.data());
+    const uint32_t found = most.host(stream, 0, 1)[0];
+    if (found <= width) return found;
+    width = (found + 7) / 8 * 8;
+    entries.resize(size_t{width} * count);
+  }
+}
 
 // Before a batch. `near_stale`: whether its first step finds its near lists so.
 struct RoundsReset {

@@ -62,7 +62,6 @@ class Scaling {
     return *made_[id];
   }
   const ScaledNode& at(NodeId id) const { return result_.nodes[id]; }
-  static int even(int exponent) { return exponent - (exponent & 1); }
 
   NodeId make(NodeId id) {
     const RealNode& from = graph_.at(id);

@@ -45,6 +45,8 @@ struct RealInputs {
 
 // floor(log2 |value|); 0 of 0 and of what is not finite.
 int exponent_of(double value);
+// The even one at or below: half of it is a root's.
+inline int even(int exponent) { return exponent - (exponent & 1); }
 // Of what has this exponent, to a power.
 int power_exponent(int exponent, double power);
 // Of a table's values, and of the arguments in which its entries count.
