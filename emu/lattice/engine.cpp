@@ -77,6 +77,7 @@ LatticeEngine::Impl::Impl(const Plan& plan, uint64_t step, uint32_t count, const
     rounds_.emplace(own_program_ ? *own_program_ : plan.program->program, rule_, lattice_,
                     rows_of_bonds().get());
     if (options_.rule_code == RuleCode::compiled) compile_rounds();
+    if (options_.rule_code == RuleCode::automatic) take_kept_code();
   }
   const std::vector<Kernels> here = kernels_here(rule_);
   const auto named = std::find_if(here.begin(), here.end(), [&](const Kernels& k) {

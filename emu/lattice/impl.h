@@ -58,6 +58,7 @@ struct LatticeEngine::Impl {
   void run_rounds(const Active& active);
   void keep_fields();
   void compile_rounds();
+  void take_kept_code();
   void compile_if_worth();
   std::vector<PaddedArray<double>*> halo_of_round(size_t k);
   std::vector<int64_t> own_fields(const std::vector<PaddedArray<double>>& from) const;

@@ -26,7 +26,7 @@ void LatticeEngine::Impl::keep_fields() {
 
 void LatticeEngine::Impl::compile_rounds() {
   const std::string directory = options_.code_directory.empty() ? cache_directory() : options_.code_directory;
-  if (directory.empty())
+  if (directory.empty() && !rounds_->has_kept_code(options_.simd))
     throw InputError("neither XDG_CACHE_HOME nor HOME is set: no place to keep a rule's compiled code");
   if (!shared()) return rounds_->compile(options_.simd, directory);
   // One rank compiles, then the others find what it made. None waits for one that failed.
@@ -43,6 +43,18 @@ void LatticeEngine::Impl::compile_rounds() {
   }
   if (error) std::rethrow_exception(error);
   if (failed[0] > 0) throw InputError("a rule's code is not compiled on another rank");
+}
+
+// Before the first step. On all ranks or on none.
+void LatticeEngine::Impl::take_kept_code() {
+  std::array<double, 1> missing{rounds_->has_kept_code(options_.simd) ? 0.0 : 1.0};
+  if (shared()) options_.ranks->most(missing);
+  if (missing[0] > 0) return;
+  try {
+    compile_rounds();
+  } catch (const InputError&) {
+    may_compile_ = false;
+  }
 }
 
 // Where there is no compiler, or it is not to be trusted, the rule stays interpreted.
@@ -176,7 +188,7 @@ void LatticeEngine::Impl::run_rounds(const Active& active) {
     options_.ranks->most(failed);
     if (failed[0] > 0) fail_as_golden();
   }
-  for_each_block([&](Block& block) { rounds_->move(block, particles_, active); });
+  for_each_block([&](Block& block) { rounds_->move(number_of(block), block, particles_, active, step_); });
 }
 
 // Golden takes the same step, on each rank, and says what does not fit.

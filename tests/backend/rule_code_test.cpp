@@ -74,8 +74,22 @@ TEST_F(RuleCodeTest, IsCompiledOnce) {
 }
 
 TEST_F(RuleCodeTest, ACompilerThatMakesOtherNumbersIsNotTrusted) {
-  use_compiler_after("test \"$1\" = --version || sed -i 's/sum1 + term1/sum1 - term1/' rule.cpp");
-  EXPECT_NE(refusal().find("makes other numbers of round"), std::string::npos) << refusal();
+  struct Mistake {
+    const char *line, *told;
+  };
+  const Mistake mistakes[] = {
+      {"s/sum1 = fused(product1, /sum1 = fused(product1, -/", "makes other numbers of round"},
+      {"s/store(to, x)/store(to, old_x)/", "makes other numbers of the finish of round"},
+      {"s/bad |= outside & counts/bad |= W{}/", "makes other numbers of "},
+      {"s/keep(job.v\\[axis\\] + i, v, awake/keep(job.v[axis] + i, v, ~W{}/",
+       "makes other numbers of the finish"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    use_compiler_after(std::string("test \"$1\" = --version || find . -type f -exec sed -i '") +
+                       mistake.line + "' {} +");
+    EXPECT_NE(refusal().find(mistake.told), std::string::npos) << mistake.line << ": " << refusal();
+    std::filesystem::remove_all(scratch_.path("code"));
+  }
 }
 
 TEST_F(RuleCodeTest, ACompilerThatFailsIsToldWithItsLog) {

@@ -10,26 +10,39 @@
 namespace cuboct::test {
 namespace {
 
-// Each graph is that of a round's pairs, its inputs fields of the other particle; what it makes is summed.
-void add_round(graph::FixedProgram& program, uint64_t seed, std::map<graph::Op, int>& met) {
-  graph::Round round{.name = std::to_string(seed), .pair = random_graph(seed, 40).graph};
-  graph::Graph& pair = round.pair;
-  const graph::Exactness exact = graph::exactness_of(pair);
-  if (!exact.doubles) pair.nodes.resize(static_cast<size_t>(exact.worst));
-  constexpr graph::Interval kSummed{-(int64_t{1} << 46), int64_t{1} << 46};  // of 27 partners below 2^51
-  const int nodes = static_cast<int>(pair.nodes.size());
-  for (int n = 0; n < nodes; ++n) {
-    graph::Node& node = pair.nodes[static_cast<size_t>(n)];
+// Its inputs become fields of the program, of this end. The graph ends before the first node that doubles do
+// not hold. `met`: counts operations.
+graph::Graph graph_of_fields(graph::FixedProgram& program, uint64_t seed, graph::Source end,
+                             std::map<graph::Op, int>& met) {
+  graph::Graph graph = random_graph(seed, 40).graph;
+  const graph::Exactness exact = graph::exactness_of(graph);
+  if (!exact.doubles) graph.nodes.resize(static_cast<size_t>(exact.worst));
+  for (graph::Node& node : graph.nodes) {
     ++met[node.op];
-    if (node.op == graph::Op::input) {
-      node.source = graph::Source::other_field;
-      node.index = static_cast<int>(program.fields.size()), node.axis = 0;
-      program.fields.push_back({.name = "f", .numbers = 1, .range = node.range});
-    }
+    if (node.op != graph::Op::input) continue;
+    node.source = end, node.index = static_cast<int>(program.fields.size()), node.axis = 0;
+    program.fields.push_back({.name = "f", .numbers = 1, .range = node.range});
+  }
+  return graph;
+}
+
+// The pairs' graph reads the other particle, and what it makes is summed. What the finish makes is written.
+void add_round(graph::FixedProgram& program, uint64_t seed, std::map<graph::Op, int>& met) {
+  graph::Round round{.name = std::to_string(seed),
+                     .pair = graph_of_fields(program, seed, graph::Source::other_field, met),
+                     .finish = graph_of_fields(program, seed + 1'000'000, graph::Source::own_field, met)};
+  constexpr graph::Interval kSummed{-(int64_t{1} << 46), int64_t{1} << 46};  // of 27 partners below 2^51
+  const int nodes = static_cast<int>(round.pair.nodes.size());
+  for (int n = 0; n < nodes; ++n) {
+    const graph::Node& node = round.pair.nodes[static_cast<size_t>(n)];
     if (kSummed.holds(node.range.low) && kSummed.holds(node.range.high)) round.sums.push_back({"s", {n}});
   }
-  pair.nodes.push_back({.op = graph::Op::constant, .number = 1, .range = {1, 1}});
+  round.pair.nodes.push_back({.op = graph::Op::constant, .number = 1, .range = {1, 1}});
   round.when = nodes;
+  for (int n = 0; n < static_cast<int>(round.finish.nodes.size()); ++n) {
+    round.writes.push_back({.field = static_cast<int>(program.fields.size()), .component = 0, .node = n});
+    program.fields.push_back({.name = "made"});
+  }
   program.rounds.push_back(std::move(round));
 }
 
@@ -39,10 +52,14 @@ void compare_graphs(uint64_t first, uint64_t count, std::map<graph::Op, int>& me
   for (uint64_t seed = first; seed < first + count; ++seed) add_round(program, seed, met);
   const emu::CodeLibrary library(program, false, "", testing::TempDir() + "cuboct_rule_code_graphs");
   const emu::BondSpace space;
+  emu::KernelRule rule;
+  rule.cell = 4096, rule.inverse_cell = 1.0 / 4096, rule.guard = rule.inverse_guard = 1;
   for (size_t k = 0; k < program.rounds.size(); ++k) {
     const emu::CodePass code(library, program, space, k, false);
     emu::PairPass pass(program, program.rounds[k], space, false);
     EXPECT_NO_THROW(emu::prove(code, pass, program, program.rounds[k], space, false)) << "seed " << first + k;
+    const emu::FinishCodePass finish(library, rule, k);
+    EXPECT_NO_THROW(emu::prove(finish, program, rule, k)) << "seed " << first + k;
   }
 }
 

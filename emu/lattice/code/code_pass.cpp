@@ -9,7 +9,7 @@ namespace {
 
 // Who the code asks of bonds.
 struct Owner {
-  const Scope& scope;
+  const CodeScope& scope;
   const graph::FixedProgram& program;
   const BondSpace& space;
   const BondList& bonds;
@@ -28,7 +28,7 @@ bool meet(void* owner, uint32_t own, uint64_t slot, double apart[3], bool* fits)
 }
 
 void mark(void* owner, uint32_t own, uint32_t other) {
-  const Scope& scope = static_cast<const Owner*>(owner)->scope;
+  const CodeScope& scope = static_cast<const Owner*>(owner)->scope;
   for (const uint32_t end : {own, other}) scope.active.mark(scope.particles.cell[end]);
 }
 
@@ -39,12 +39,18 @@ std::vector<Double*> pointers(Arrays& arrays) {
   return to;
 }
 
-// By group of the block; empty: all.
-std::vector<uint8_t> wanted_groups(const Scope& scope, const uint8_t* cells) {
-  std::vector<uint8_t> wanted;
-  for (uint32_t k = 0; cells != nullptr && k < scope.block.groups(); ++k)
-    wanted.push_back(any_flag(cells, scope.particles, scope.block.first_group() + k));
-  return wanted;
+// Sums of groups where all are at rest are read by nobody.
+void clear(const CodeScope& scope, Sums& sums) {
+  const std::vector<uint8_t>& awake = scope.wanted.awake;
+  for (auto& sum : sums) {
+    const auto end = static_cast<ptrdiff_t>(sum.size()) + kGroup;
+    if (awake.empty()) {
+      std::fill(sum.data() - kGroup, sum.data() + end, kMagic);
+      continue;
+    }
+    for (size_t k = 0; k < awake.size(); ++k)
+      if (awake[k] != 0) std::fill_n(sum.data() + k * kGroup, kGroup, kMagic);
+  }
 }
 
 void give_list(Job& job, const Entry* entries, const std::vector<EntryGroup>& groups,
@@ -57,6 +63,15 @@ void give_list(Job& job, const Entry* entries, const std::vector<EntryGroup>& gr
 
 }  // namespace
 
+WantedGroups::WantedGroups(const Particles& particles, const Block& block, const Active& active) {
+  const auto flags = [&](const uint8_t* cells, std::vector<uint8_t>& groups) {
+    for (uint32_t k = 0; cells != nullptr && k < block.groups(); ++k)
+      groups.push_back(any_flag(cells, particles, block.first_group() + k));
+  };
+  flags(active.near, near);
+  flags(active.awake, awake);
+}
+
 CodePass::CodePass(const CodeLibrary& library, const graph::FixedProgram& program, const BondSpace& space,
                    size_t round, bool once)
     : library_(library), program_(program), space_(space), round_(round), once_(once) {
@@ -64,14 +79,13 @@ CodePass::CodePass(const CodeLibrary& library, const graph::FixedProgram& progra
     bond_constants_.assign(space.rows->constants.begin(), space.rows->constants.end());
 }
 
-bool CodePass::run(const Scope& scope, BondList& bonds, Sums& sums) const {
-  for (auto& sum : sums) std::fill_n(sum.data() - kGroup, sum.size() + 2 * kGroup, 0.0);
+bool CodePass::run(const CodeScope& scope, BondList& bonds, Sums& sums) const {
+  clear(scope, sums);
   const Particles& particles = scope.particles;
   const bool bonded = space_.rows != nullptr;
   Owner owner{scope, program_, space_, bonds};
   const auto fields = pointers<const double>(particles.fields);
   const auto sum_pointers = pointers<double>(sums), numbers = pointers<double>(bonds.numbers);
-  const std::vector<uint8_t> wanted = wanted_groups(scope, scope.active.near);
 
   Job job{};
   for (size_t a = 0; a < 3; ++a) job.x[a] = particles.x[a].data(), job.v[a] = particles.v[a].data();
@@ -81,9 +95,9 @@ bool CodePass::run(const Scope& scope, BondList& bonds, Sums& sums) const {
   job.shift = reinterpret_cast<const double(*)[3]>(particles.shift.data());
   job.begin = scope.block.begin;
   job.sums = sum_pointers.data();
-  job.wanted = wanted.empty() ? nullptr : wanted.data();
+  job.wanted = scope.wanted.near.empty() ? nullptr : scope.wanted.near.data();
   job.step = static_cast<double>(scope.step);
-  library_.give_numbers(job);
+  job.numbers = library_.numbers();
   job.bonds = numbers.data();
   job.kind = bonds.kind.data();
   job.bond_constants = bond_constants_.data();

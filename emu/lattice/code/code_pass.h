@@ -7,14 +7,27 @@
 
 namespace cuboct::emu {
 
+// By group of the block, where cells may be at rest; empty: all. `near`: pairs of some particle may be
+// needed. `awake`: some particle is updated.
+struct WantedGroups {
+  WantedGroups() = default;
+  WantedGroups(const Particles& particles, const Block& block, const Active& active);
+  std::vector<uint8_t> near, awake;
+};
+
+struct CodeScope : Scope {
+  const WantedGroups& wanted;
+};
+
 class CodePass {
  public:
   // All must outlive it.
   CodePass(const CodeLibrary& library, const graph::FixedProgram& program, const BondSpace& space,
            size_t round, bool once);
 
-  // As PairPass::run.
-  bool run(const Scope& scope, BondList& bonds, Sums& sums) const;
+  // As PairPass::run, but for the sums: kMagic is added to each (kernel_rule.h), and those of groups without
+  // anyone awake are anything.
+  bool run(const CodeScope& scope, BondList& bonds, Sums& sums) const;
 
  private:
   const CodeLibrary& library_;

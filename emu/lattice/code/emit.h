@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Prints a program's rounds as C++ for vectors (lanes.h): one statement for each node of a pair's graph.
+// Prints a program's rounds as C++ for vectors (lanes.h): one statement for each node.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ namespace cuboct::emu {
 
 struct Code {
   std::string text;
-  std::vector<double> constants;  // Job::constants
-  // Job::tables: of these rounds the tables of the pair's graph, one round after the other.
+  std::vector<double> constants;  // CodeNumbers::constants
+  // CodeNumbers::tables: of each round the tables of the pair's graph, then those of the finish.
 };
 
 // A function that the text defines, a MeetCode: of this round, and these ends.

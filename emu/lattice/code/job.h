@@ -11,18 +11,30 @@
 
 namespace cuboct::emu {
 
-// A table as vectors read it (VectorTable).
+// A table as vectors read it (VectorTable); its words may be packed (is_packed).
 struct CodeTable {
   const uint64_t* words;
   const double* c2;  // of parabolas
   int64_t index_shift, index_mask, index_bits, index_base;
   int64_t t_mask;
-  double t_unit;
-  double factor;  // of a rounding by the bits of t
+  double factor;     // of a rounding by the bits of t, in units of t_mask
+  int64_t low_mask;  // of packed words: c0 plus half of this
+  double bias;       // kMagic and that half
+};
+
+// What a rule's text says in numbers.
+struct CodeNumbers {
+  const double* constants;
+  const CodeTable* tables;
+  const double* const* type_constants;  // [constant][type]
+  const double* const* pair_constants;  // [constant][own * types + other]
+  int64_t types;
 };
 
 // Arrays are by index of a particle unless said otherwise, and readable a group beyond either end.
 struct Job {
+  CodeNumbers numbers;
+  double step;
   const double* x[3];
   const double* v[3];
   const double* const* fields;  // by number
@@ -30,20 +42,13 @@ struct Job {
   const uint32_t* id;        // null: the index is the id
   const double (*shift)[3];  // Particles::shift
   uint32_t begin;            // the block's first particle
-  double* const* sums;       // by term, [index - begin]
+  double* const* sums;       // by term, [index - begin]; kMagic where nothing is added yet
 
   const Entry* entries;
   const EntryGroup* groups;
   const uint32_t* group_of;  // the block's groups that have entries; null: all
   uint32_t group_count;
   const uint8_t* wanted;  // by group of the block; null: all
-
-  const double* constants;
-  const CodeTable* tables;
-  const double* const* type_constants;  // [constant][type]
-  const double* const* pair_constants;  // [constant][own * types + other]
-  int64_t types;
-  double step;
 
   // Of a bonded program. A slot is entry * kGroup + lane.
   double* const* bonds;          // [number][slot]
@@ -62,5 +67,32 @@ struct Job {
 // False where something does not fit. The particles' ends of each entry: the terms go to the sums of the
 // lower one, of the other one, or of both.
 using MeetCode = bool (*)(const Job&);
+
+// Of a round's finish. Fields are those of Particles; arrays are by index unless said otherwise.
+struct FinishJob {
+  CodeNumbers numbers;
+  double step;
+  double* x[3];
+  int32_t* residue[3];
+  double* v[3];
+  double* u[3];  // null: nobody has a displacement
+  double* const* fields;
+  const uint8_t* type;
+  const uint32_t* id;  // null: the index is the id
+  uint32_t begin, end;
+  const double* const* sums;  // as of Job
+  const uint8_t* wanted;      // by group of the block; null: all
+  const uint32_t* cell;
+  const uint8_t* awake;  // by cell; null: all
+  double edge, inverse_edge, guard, inverse_guard;
+
+  void* owner;
+  void (*changed)(void* owner, uint32_t particle);  // null: nobody asks
+  void (*crossed)(void* owner, uint32_t particle, const int8_t away[3]);
+  double* fastest2;  // the largest v.v so far
+};
+
+// Of awake particles. False where something does not fit.
+using FinishCode = bool (*)(const FinishJob&);
 
 }  // namespace cuboct::emu

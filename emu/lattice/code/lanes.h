@@ -24,11 +24,14 @@ constexpr int kLanes = 8;
 #define CUBOCT_512_ANY(a) _mm512_movepi64_mask(reinterpret_cast<__m512i>(a))
 #define CUBOCT_512_FMA(a, b, c) reinterpret_cast<V>(_mm512_fmadd_pd(a, b, c))
 #define CUBOCT_512_FLOOR(a) reinterpret_cast<V>(_mm512_roundscale_pd(a, 9))
+#define CUBOCT_512_GATHER(from, at) \
+  reinterpret_cast<V>(_mm512_i64gather_pd(reinterpret_cast<__m512i>(at), from, 8))
 #else
-#define CUBOCT_512_ANY(a) \
-  __builtin_ia32_cvtq2mask512(reinterpret_cast<long long __attribute__((vector_size(64)))>(a))
+#define CUBOCT_512_ANY(a) __builtin_ia32_cvtq2mask512(reinterpret_cast<LongLongs>(a))
 #define CUBOCT_512_FMA(a, b, c) __builtin_ia32_vfmaddpd512_mask(a, b, c, -1, 4)
 #define CUBOCT_512_FLOOR(a) __builtin_ia32_rndscalepd_mask(a, 9, a, -1, 4)
+#define CUBOCT_512_GATHER(from, at) \
+  __builtin_ia32_gatherdiv8df(V{}, from, reinterpret_cast<LongLongs>(at), -1, 8)
 #endif
 #define CUBOCT_EACH(of) of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)
 #elif defined(__AVX2__) && defined(__FMA__)
@@ -36,8 +39,12 @@ constexpr int kLanes = 4;
 #define CUBOCT_256
 #if defined(__clang__)
 #define CUBOCT_256_FMA(a, b, c) reinterpret_cast<V>(_mm256_fmadd_pd(a, b, c))
+#define CUBOCT_256_GATHER(from, at) \
+  reinterpret_cast<V>(_mm256_i64gather_pd(from, reinterpret_cast<__m256i>(at), 8))
 #else
 #define CUBOCT_256_FMA(a, b, c) __builtin_ia32_vfmaddpd256(a, b, c)
+#define CUBOCT_256_GATHER(from, at) \
+  __builtin_ia32_gatherdiv4df(V{}, from, reinterpret_cast<LongLongs>(at), reinterpret_cast<V>(~W{}), 8)
 #endif
 #define CUBOCT_EACH(of) of(0), of(1), of(2), of(3)
 #else
@@ -49,7 +56,9 @@ constexpr uint32_t kEntryLanes = 8;
 typedef double V __attribute__((vector_size(8 * kLanes)));
 typedef int64_t W __attribute__((vector_size(8 * kLanes)));  // integers, or truths: 0 and -1
 typedef uint64_t U __attribute__((vector_size(8 * kLanes)));
+typedef long long LongLongs __attribute__((vector_size(8 * kLanes)));
 typedef double Unaligned __attribute__((vector_size(8 * kLanes), aligned(8)));
+typedef int32_t Half __attribute__((vector_size(4 * kLanes), aligned(4)));
 
 constexpr double kTwo52 = 0x1p52, kMagic = 0x1.8p52;
 
@@ -111,9 +120,19 @@ inline V magnitude(V a) {
   return reinterpret_cast<V>(reinterpret_cast<W>(a) & splat(int64_t{0x7fffffffffffffff}));
 }
 
+inline V gather(const double* from, W at) {
+#if defined(CUBOCT_512)
+  return CUBOCT_512_GATHER(from, at);
+#elif defined(CUBOCT_256)
+  return CUBOCT_256_GATHER(from, at);
+#else
 #define CUBOCT_GATHER(l) from[at[l]]
-inline V gather(const double* from, W at) { return V{CUBOCT_EACH(CUBOCT_GATHER)}; }
-inline U gather(const uint64_t* from, W at) { return U{CUBOCT_EACH(CUBOCT_GATHER)}; }
+  return V{CUBOCT_EACH(CUBOCT_GATHER)};
+#endif
+}
+inline U gather(const uint64_t* from, W at) {
+  return reinterpret_cast<U>(gather(reinterpret_cast<const double*>(from), at));
+}
 
 // Of a particle's type, of a pair of types, of a particle: lanes begin at these places.
 inline V of_type(const double* from, const uint8_t* type) {
@@ -154,7 +173,7 @@ inline V fraction(U bits) {
 }
 
 // FixedTable's value at `a`. `law`: where the entries of each lane's law begin.
-template <bool kOctaves, int kDegree>
+template <bool kOctaves, int kDegree, bool kPacked>
 inline V lookup(const CodeTable& table, V argument, W law) {
   const V a = argument + V{};  // no bit of -0.0
   W index;
@@ -171,13 +190,20 @@ inline V lookup(const CodeTable& table, V argument, W law) {
     index = reinterpret_cast<W>(bits >> table.index_shift) & splat(table.index_mask);
     t = fraction(bits & reinterpret_cast<U>(splat(table.t_mask)));
   }
-  t = t * splat(table.t_unit);
   index = index + law;
   const U word = gather(table.words, index);
-  const V c0 = from_biased(word & reinterpret_cast<U>(splat(int64_t{0xffffffff})));
-  V slope = from_biased(word >> 32);
   const V factor = splat(table.factor);
+  V c0, slope;
+  if constexpr (kPacked) {
+    const U low = reinterpret_cast<U>(splat(table.low_mask));
+    c0 = reinterpret_cast<V>((word & low) | reinterpret_cast<U>(splat(kMagic)));
+    slope = reinterpret_cast<V>(word & ~low);
+  } else {
+    c0 = from_biased(word & reinterpret_cast<U>(splat(int64_t{0xffffffff})));
+    slope = from_biased(word >> 32);
+  }
   if constexpr (kDegree == 2) slope = slope + rounded(gather(table.c2, index) * t, factor);
+  if constexpr (kPacked) return fused(slope * t, factor, c0) - splat(table.bias);
   return c0 + rounded(slope * t, factor);
 }
 inline W law_of(V number, const CodeTable& table) { return whole(number) << table.index_bits; }

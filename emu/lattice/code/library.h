@@ -5,33 +5,40 @@
 #include <string>
 #include <vector>
 
+#include "emu/lattice/code/code_table.h"
 #include "emu/lattice/code/emit.h"
-#include "emu/lattice/code/job.h"
-#include "emu/lattice/rounds/vector_block.h"
 
 namespace cuboct::emu {
 
+// Code that was compiled when the program was built: in this directory beside it (part_path).
+inline constexpr const char* kKeptCode = "rules";
+// `simd`: as LatticeOptions. `once`: as code_of.
+bool is_kept(const graph::FixedProgram& program, bool once, const std::string& simd);
+// Compiles it for each width of vectors that a machine of this kind may have. Throws InputError.
+void keep_code(const graph::FixedProgram& program, bool once, const std::string& directory);
+
 class CodeLibrary {
  public:
-  // Compiles the code unless `directory` already has it, and loads it. `simd`: as LatticeOptions. `program`
-  // must outlive it. Throws InputError where there is no compiler, or it fails.
+  // Loads what is kept, else compiles the code unless `directory` already has it. `program` must outlive it.
+  // Throws InputError where there is no compiler, or it fails.
   CodeLibrary(const graph::FixedProgram& program, bool once, const std::string& simd,
               const std::string& directory);
 
   MeetCode meet(size_t round, Ends ends) const;  // null: the code has none
-  // The job's constants, tables, and numbers of types.
-  void give_numbers(Job& job) const;
+  FinishCode finish(size_t round) const { return finish_[round]; }
+  FinishCode fits(size_t round) const { return fits_[round]; }  // null: not of the last round
+  CodeNumbers numbers() const;
 
  private:
   void load(const std::string& path, size_t rounds);
 
   Code code_;
   int types_;
-  std::vector<VectorTable> vector_tables_;
-  std::vector<CodeTable> tables_;
+  CodeTables tables_;
   std::vector<std::vector<double>> type_constants_, pair_constants_;
   std::vector<const double*> type_pointers_, pair_pointers_;
   std::vector<std::vector<MeetCode>> meet_;  // [round][ends]
+  std::vector<FinishCode> finish_, fits_;    // by round
 };
 
 }  // namespace cuboct::emu

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "emu/lattice/code/code_pass.h"
+#include "emu/lattice/code/finish_code_pass.h"
 
 namespace cuboct::emu {
 
@@ -11,5 +12,10 @@ namespace cuboct::emu {
 // not to be trusted with this rule.
 void prove(const CodePass& code, PairPass& pass, const graph::FixedProgram& program,
            const graph::Round& round, const BondSpace& space, bool once);
+
+// The same of some 4,096 random particles and their sums, some of them asleep: fields, velocities,
+// displacements, places and crossings. `round`: of the program, as of `code`.
+void prove(const FinishCodePass& code, const graph::FixedProgram& program, const KernelRule& rule,
+           size_t round);
 
 }  // namespace cuboct::emu

@@ -104,6 +104,16 @@ HWY_AFTER_NAMESPACE();
 namespace cuboct::emu {
 HWY_EXPORT(move);
 
+Moves moves_for(const graph::FixedProgram& program, size_t room) {
+  Moves moves;
+  moves.axes = static_cast<int>(program.motion.v.size());
+  for (auto* arrays : {&moves.v, &moves.drift})
+    for (auto& array : *arrays) array = PaddedArray<double>(room);
+  if (!program.motion.u.empty())
+    for (auto& array : moves.u) array = PaddedArray<double>(room);
+  return moves;
+}
+
 void move_block(const KernelRule& rule, const Moves& moves, const Active& active, Particles& particles,
                 Block& block) {
   HWY_DYNAMIC_DISPATCH(move)(rule, moves, active, particles, block);

@@ -43,4 +43,8 @@ bool is_mutual(const graph::Round& round) {
   return mutual(round.when) && std::ranges::all_of(terms_of(round), mutual);
 }
 
+bool is_mutual(const graph::FixedProgram& program) {
+  return std::ranges::all_of(program.rounds, [](const graph::Round& round) { return is_mutual(round); });
+}
+
 }  // namespace cuboct::emu

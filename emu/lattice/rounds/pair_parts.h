@@ -22,6 +22,7 @@ struct PairParts {
 
 // Whether `when` and every term are odd or even.
 bool is_mutual(const graph::Round& round);
+bool is_mutual(const graph::FixedProgram& program);  // each of its rounds
 
 std::vector<int> inputs_of(const graph::Graph& graph, const std::vector<int>& nodes);
 

@@ -27,7 +27,7 @@ void check_doubles(const graph::Graph& graph, const std::string& what) {
 
 Rounds::Rounds(const graph::FixedProgram& program, const KernelRule& rule, const Lattice& lattice,
                const graph::BondRows* rows)
-    : program_(program), rule_(rule), once_(std::ranges::all_of(program.rounds, is_mutual)) {
+    : program_(program), rule_(rule), once_(is_mutual(program)) {
   if (rows != nullptr) {
     space_ = {rows, rule.cell, {}};
     for (size_t a = 0; a < 3; ++a) space_.period[a] = lattice.period()[a] * rule.cell;
@@ -80,11 +80,7 @@ void Rounds::cut(const std::vector<Block>& blocks, size_t room) {
       for (int n = 0; n < round.numbers(); ++n) part.sums[k].emplace_back(blocks[b].end - blocks[b].begin);
     }
   }
-  moves_.axes = static_cast<int>(program_.motion.v.size());
-  for (auto* arrays : {&moves_.v, &moves_.drift})
-    for (auto& array : *arrays) array = PaddedArray<double>(room);
-  if (!program_.motion.u.empty())
-    for (auto& array : moves_.u) array = PaddedArray<double>(room);
+  moves_ = compiled() ? Moves() : moves_for(program_, room);
 }
 
 void Rounds::list_bonds(size_t b, const Block& block, const Particles& particles, const Index& index) {
@@ -121,31 +117,49 @@ void Rounds::keep_bonds() {
       std::copy_n(part.bonds.numbers[k].data(), part.bonds.numbers[k].size(), part.bonds.before[k].data());
 }
 
+bool Rounds::has_kept_code(const std::string& simd) const { return is_kept(program_, once_, simd); }
+
 void Rounds::compile(const std::string& simd, const std::string& directory) {
   auto library = std::make_unique<CodeLibrary>(program_, once_, simd, directory);
   std::vector<CodePass> code;
+  std::vector<FinishCodePass> finishes;
   for (size_t k = 0; k < program_.rounds.size(); ++k) {
+    const graph::Round& round = program_.rounds[k];
     code.emplace_back(*library, program_, space_, k, once_);
-    PairPass pass(program_, program_.rounds[k], space_, once_);
-    prove(code.back(), pass, program_, program_.rounds[k], space_, once_);
+    PairPass pass(program_, round, space_, once_);
+    prove(code.back(), pass, program_, round, space_, once_);
+    finishes.emplace_back(*library, rule_, k);
+    prove(finishes.back(), program_, rule_, k);
   }
   library_ = std::move(library);
   code_ = std::move(code);
+  finish_code_ = std::move(finishes);
+  moves_ = {};
 }
 
 bool Rounds::meet(size_t k, size_t b, const Scope& scope) {
-  if (parts_[b].lost) return false;
-  if (compiled()) return code_[k].run(scope, parts_[b].bonds, parts_[b].sums[k]);
-  return parts_[b].pairs[k]->run(scope, parts_[b].bonds, parts_[b].sums[k]);
+  Part& part = parts_[b];
+  if (part.lost) return false;
+  if (!compiled()) return part.pairs[k]->run(scope, part.bonds, part.sums[k]);
+  if (k == 0) part.wanted = WantedGroups(scope.particles, scope.block, scope.active);
+  return code_[k].run({scope, part.wanted}, part.bonds, part.sums[k]);
 }
 
-bool Rounds::finish(size_t k, size_t b, const Block& block, Particles& particles, const Active& active,
+bool Rounds::finish(size_t k, size_t b, Block& block, Particles& particles, const Active& active,
                     uint64_t step) {
-  return parts_[b].finishes[k]->run(particles, block, active, step, parts_[b].sums[k], moves_);
+  Part& part = parts_[b];
+  if (!compiled()) return part.finishes[k]->run(particles, block, active, step, part.sums[k], moves_);
+  const FinishCodePass& code = finish_code_[k];
+  const FinishCodePass::Step of{active, step, part.wanted.awake, part.sums[k]};
+  return k + 1 < program_.rounds.size() ? code.run(particles, block, of) : code.fits(particles, block, of);
 }
 
-void Rounds::move(Block& block, Particles& particles, const Active& active) {
-  move_block(rule_, moves_, active, particles, block);
+void Rounds::move(size_t b, Block& block, Particles& particles, const Active& active, uint64_t step) {
+  const Part& part = parts_[b];
+  if (compiled())
+    finish_code_.back().move(particles, block, {active, step, part.wanted.awake, part.sums.back()});
+  else
+    move_block(rule_, moves_, active, particles, block);
 }
 
 }  // namespace cuboct::emu

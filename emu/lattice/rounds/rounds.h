@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emu/lattice/code/code_pass.h"
+#include "emu/lattice/code/finish_code_pass.h"
 #include "emu/lattice/rounds/finish_pass.h"
 #include "emu/lattice/rounds/pair_pass.h"
 
@@ -34,7 +35,9 @@ class Rounds {
   void keep_bonds();
   std::vector<int64_t> bonds_before() const { return whole(&BondList::before); }
 
-  // Runs the pairs by code of the host's compiler from now on (CodeLibrary), once it has proven itself.
+  // Whether the code was compiled with the program: then nothing is compiled here.
+  bool has_kept_code(const std::string& simd) const;
+  // Runs by compiled code from now on (CodeLibrary), once it has proven itself.
   void compile(const std::string& simd, const std::string& directory);
   bool compiled() const { return library_ != nullptr; }
 
@@ -47,16 +50,16 @@ class Rounds {
   // Of round k, all blocks after one another: the sums of pairs, then the finish. False where something does
   // not fit.
   bool meet(size_t k, size_t b, const Scope& scope);
-  bool finish(size_t k, size_t b, const Block& block, Particles& particles, const Active& active,
-              uint64_t step);
+  bool finish(size_t k, size_t b, Block& block, Particles& particles, const Active& active, uint64_t step);
   // After the last round: velocities, displacements and places, and who left its cell.
-  void move(Block& block, Particles& particles, const Active& active);
+  void move(size_t b, Block& block, Particles& particles, const Active& active, uint64_t step);
 
  private:
   struct Part {
     std::vector<std::unique_ptr<PairPass>> pairs;  // by round
     std::vector<std::unique_ptr<FinishPass>> finishes;
     std::vector<Sums> sums;
+    WantedGroups wanted;  // of this step, by compiled code
     BondList bonds;
     bool lost = false;  // a bond that counts has its partner too far away
   };
@@ -66,11 +69,12 @@ class Rounds {
   const KernelRule& rule_;
   bool once_;  // terms are made once for both ends
   BondSpace space_;
-  std::vector<Part> parts_;  // by block
-  Moves moves_;
+  std::vector<Part> parts_;               // by block
+  Moves moves_;                           // while finishes are interpreted
   std::vector<int64_t> bonds_;            // as they were given
-  std::unique_ptr<CodeLibrary> library_;  // null: pairs are interpreted
+  std::unique_ptr<CodeLibrary> library_;  // null: rounds are interpreted
   std::vector<CodePass> code_;            // by round
+  std::vector<FinishCodePass> finish_code_;
 };
 
 }  // namespace cuboct::emu

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Prints the finish of a round as C++ for vectors.
+#pragma once
+
+#include <string>
+
+#include "emu/lattice/code/graph_text.h"
+#include "model/graph/program.h"
+
+namespace cuboct::emu {
+
+// Functions that the text defines, each a FinishCode. Of the last round `fits` runs the checks alone and
+// writes nothing; `finish` writes all and checks nothing. Of another round there is `finish` alone, which
+// writes fields and checks.
+std::string name_of_finish(size_t round);
+std::string name_of_fits(size_t round);
+
+std::string finish_text(const graph::FixedProgram& program, size_t round, size_t first_table,
+                        CodeConstants& constants);
+
+}  // namespace cuboct::emu
