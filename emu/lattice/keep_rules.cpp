@@ -10,6 +10,7 @@
 #include "hw/arch/arch.h"
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
+#include "model/program/integer_program.h"
 #include "model/run/start.h"
 
 namespace cuboct::emu {
