@@ -41,16 +41,12 @@ std::vector<Double*> pointers(Arrays& arrays) {
 
 // Sums of groups where all are at rest are read by nobody.
 void clear(const CodeScope& scope, Sums& sums) {
-  const std::vector<uint8_t>& awake = scope.wanted.awake;
-  for (auto& sum : sums) {
-    const auto end = static_cast<ptrdiff_t>(sum.size()) + kGroup;
-    if (awake.empty()) {
-      std::fill(sum.data() - kGroup, sum.data() + end, kMagic);
-      continue;
-    }
-    for (size_t k = 0; k < awake.size(); ++k)
-      if (awake[k] != 0) std::fill_n(sum.data() + k * kGroup, kGroup, kMagic);
-  }
+  for (auto& sum : sums)
+    if (scope.active.near == nullptr)
+      std::fill(sum.data() - kGroup, sum.data() + sum.size() + kGroup, kMagic);
+    else
+      for (const uint32_t k : scope.wanted.awake)
+        std::fill_n(sum.data() + size_t{k} * kGroup, kGroup, kMagic);
 }
 
 void give_list(Job& job, const Entry* entries, const std::vector<EntryGroup>& groups,
@@ -58,18 +54,20 @@ void give_list(Job& job, const Entry* entries, const std::vector<EntryGroup>& gr
   job.entries = entries;
   job.groups = groups.data();
   job.group_of = group_of;
-  job.group_count = static_cast<uint32_t>(groups.size());
+  job.count = static_cast<uint32_t>(groups.size());
 }
 
 }  // namespace
 
 WantedGroups::WantedGroups(const Particles& particles, const Block& block, const Active& active) {
-  const auto flags = [&](const uint8_t* cells, std::vector<uint8_t>& groups) {
-    for (uint32_t k = 0; cells != nullptr && k < block.groups(); ++k)
-      groups.push_back(any_flag(cells, particles, block.first_group() + k));
-  };
-  flags(active.near, near);
-  flags(active.awake, awake);
+  if (active.near == nullptr) return;
+  is_near.resize(block.groups());
+  for (uint32_t k = 0; k < block.groups(); ++k) {
+    if (!any_flag(active.near, particles, block.first_group() + k)) continue;
+    is_near[k] = 1;
+    near.push_back(k);
+    if (any_flag(active.awake, particles, block.first_group() + k)) awake.push_back(k);
+  }
 }
 
 CodePass::CodePass(const CodeLibrary& library, const graph::FixedProgram& program, const BondSpace& space,
@@ -95,7 +93,6 @@ bool CodePass::run(const CodeScope& scope, BondList& bonds, Sums& sums) const {
   job.shift = reinterpret_cast<const double(*)[3]>(particles.shift.data());
   job.begin = scope.block.begin;
   job.sums = sum_pointers.data();
-  job.wanted = scope.wanted.near.empty() ? nullptr : scope.wanted.near.data();
   job.step = static_cast<double>(scope.step);
   job.numbers = library_.numbers();
   job.bonds = numbers.data();
@@ -108,24 +105,27 @@ bool CodePass::run(const CodeScope& scope, BondList& bonds, Sums& sums) const {
   job.changed = scope.active.changed != nullptr ? mark : nullptr;
 
   const Block& block = scope.block;
+  const bool some_rest = scope.active.near != nullptr;
   bool fits = true;
-  if (bonded)
-    give_list(job, bonds.entries.data(), bonds.both, nullptr);
-  else
-    give_list(job, block.inside.entries.data(), block.inside.groups, nullptr);
-  if (once_)
-    fits = library_.meet(round_, Ends::both)(job);
-  else if (!bonded)
-    for (const Ends ends : {Ends::own, Ends::other}) fits = library_.meet(round_, ends)(job) && fits;
-  const auto across = [&](const Entry* entries, const std::vector<EntryGroup>& groups, const uint32_t* of) {
-    give_list(job, entries, groups, of);
-    fits = library_.meet(round_, Ends::own)(job) && fits;
+  // A group for each of the block.
+  const auto all_groups = [&](Ends ends, const Entry* entries, const std::vector<EntryGroup>& groups) {
+    give_list(job, entries, groups, nullptr);
+    job.chosen = some_rest ? scope.wanted.near.data() : nullptr, job.wanted = nullptr;
+    if (some_rest) job.count = static_cast<uint32_t>(scope.wanted.near.size());
+    fits = library_.meet(round_, ends)(job) && fits;
   };
-  if (bonded)
-    across(bonds.entries.data(), bonds.own, nullptr);
-  else
-    for (const Edge* edge : {&block.beside, &block.ghosts})
-      across(edge->pairs.entries.data(), edge->pairs.groups, edge->group.data());
+  if (bonded) {
+    if (once_) all_groups(Ends::both, bonds.entries.data(), bonds.both);
+    all_groups(Ends::own, bonds.entries.data(), bonds.own);
+    return fits;
+  }
+  for (const Ends ends : {Ends::own, Ends::other, Ends::both})
+    if ((ends == Ends::both) == once_) all_groups(ends, block.inside.entries.data(), block.inside.groups);
+  for (const Edge* edge : {&block.beside, &block.ghosts}) {
+    give_list(job, edge->pairs.entries.data(), edge->pairs.groups, edge->group.data());
+    job.chosen = nullptr, job.wanted = some_rest ? scope.wanted.is_near.data() : nullptr;
+    fits = library_.meet(round_, Ends::own)(job) && fits;
+  }
   return fits;
 }
 

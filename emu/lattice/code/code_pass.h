@@ -7,12 +7,13 @@
 
 namespace cuboct::emu {
 
-// By group of the block, where cells may be at rest; empty: all. `near`: pairs of some particle may be
-// needed. `awake`: some particle is updated.
+// Of a block's groups, ascending. Where no cell is at rest all are wanted, and these are empty.
 struct WantedGroups {
   WantedGroups() = default;
   WantedGroups(const Particles& particles, const Block& block, const Active& active);
-  std::vector<uint8_t> near, awake;
+  std::vector<uint32_t> near;    // pairs of some particle may be needed
+  std::vector<uint32_t> awake;   // some particle is updated
+  std::vector<uint8_t> is_near;  // by group
 };
 
 struct CodeScope : Scope {

@@ -46,11 +46,14 @@ std::string over_particles(const std::string& name, const std::string& body, boo
       "  const CodeTable* const __restrict T = job.numbers.tables;\n"
       "  static_cast<void>(K), static_cast<void>(T);\n"
       "  W bad = W{{}};\n{}"
-      "  for (ptrdiff_t i = job.begin; i < ptrdiff_t{{job.end}}; i += kLanes) {{\n"
-      "    if (job.wanted != nullptr && job.wanted[(i - job.begin) / kEntryLanes] == 0) continue;\n"
-      "    const W awake = awake_lanes(job, i);\n"
-      "    if (!any(awake)) continue;\n"
+      "  for (uint32_t n = 0; n < job.count; ++n) {{\n"
+      "    const ptrdiff_t first = job.begin + ptrdiff_t{{job.chosen != nullptr ? job.chosen[n] : n}} * "
+      "kEntryLanes;\n"
+      "    for (ptrdiff_t i = first; i < first + kEntryLanes; i += kLanes) {{\n"
+      "      const W awake = awake_lanes(job, i);\n"
+      "      if (!any(awake)) continue;\n"
       "{}"
+      "    }}\n"
       "  }}\n{}"
       "  return !any(bad);\n"
       "}}\n\n",
@@ -65,9 +68,9 @@ std::vector<int> checks_among(const graph::Graph& graph, const std::vector<int>&
 }
 
 std::string keep_all(const graph::FixedProgram& program, const graph::Round& round, const GraphText& finish) {
-  std::string text = "    Moved moved;\n";
+  std::string text = "      Moved moved;\n";
   for (const graph::Write& write : round.writes)
-    text += fmt::format("    keep(job.fields[{}] + i, {}, awake, moved);\n",
+    text += fmt::format("      keep(job.fields[{}] + i, {}, awake, moved);\n",
                         program.place(write.field) + write.component, finish.value(write.node));
   return text;
 }
@@ -75,12 +78,12 @@ std::string keep_all(const graph::FixedProgram& program, const graph::Round& rou
 std::string move_all(const graph::Motion& motion, const GraphText& finish) {
   std::string text;
   for (size_t a = 0; a < motion.v.size(); ++a) {
-    text += fmt::format("    move_axis(job, {}, i, awake, {}, {}, moved);\n", a, finish.value(motion.v[a]),
+    text += fmt::format("      move_axis(job, {}, i, awake, {}, {}, moved);\n", a, finish.value(motion.v[a]),
                         finish.value(motion.drift[a]));
-    text += fmt::format("    if (job.u[{0}] != nullptr) keep(job.u[{0}] + i, {1}, awake, moved);\n", a,
+    text += fmt::format("      if (job.u[{0}] != nullptr) keep(job.u[{0}] + i, {1}, awake, moved);\n", a,
                         motion.u.empty() ? "V{}" : finish.value(motion.u[a]));
   }
-  return text + "    fastest2 = faster(moved, awake, fastest2);\n";
+  return text + "      fastest2 = faster(moved, awake, fastest2);\n";
 }
 
 }  // namespace
@@ -96,14 +99,14 @@ std::string finish_text(const graph::FixedProgram& program, size_t k, size_t fir
                             first_table, last};
   const GraphText finish(round.finish, constants, surroundings);
   const std::vector<int> nodes = needed_by(round.finish, finish_outputs(program, round));
-  std::string body = finish.statements(nodes, false, "    ") + keep_all(program, round, finish);
+  std::string body = finish.statements(nodes, false, "      ") + keep_all(program, round, finish);
   if (last) body += move_all(program.motion, finish);
-  body += "    tell(job, i, moved);\n";
+  body += "      tell(job, i, moved);\n";
   std::string text = over_particles(name_of_finish(k), body, last);
   if (!last) return text;
   surroundings.all_fit = false;
   const std::vector<int> checked = needed_by(round.finish, checks_among(round.finish, nodes));
-  return text + over_particles(name_of_fits(k), finish.statements(checked, false, "    "), false);
+  return text + over_particles(name_of_fits(k), finish.statements(checked, false, "      "), false);
 }
 
 }  // namespace cuboct::emu

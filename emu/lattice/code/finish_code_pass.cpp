@@ -52,7 +52,9 @@ bool FinishCodePass::call(FinishCode code, Particles& particles, Block& block, c
   job.id = particles.id.size() > 0 ? particles.id.data() : nullptr;
   job.begin = block.begin, job.end = block.end;
   job.sums = sums.data();
-  job.wanted = step.wanted.empty() ? nullptr : step.wanted.data();
+  job.count = block.groups();
+  if (step.active.awake != nullptr)
+    job.chosen = step.wanted.awake.data(), job.count = static_cast<uint32_t>(step.wanted.awake.size());
   job.cell = particles.cell;
   job.awake = step.active.awake;
   job.edge = rule_.cell, job.inverse_edge = rule_.inverse_cell;

@@ -2,7 +2,7 @@
 // A round's finish by compiled code: what FinishPass makes, and of the last round what moves.
 #pragma once
 
-#include "emu/lattice/code/library.h"
+#include "emu/lattice/code/code_pass.h"
 #include "emu/lattice/kernel.h"
 #include "emu/lattice/rounds/pair_pass.h"
 
@@ -14,11 +14,11 @@ class FinishCodePass {
   FinishCodePass(const CodeLibrary& library, const KernelRule& rule, size_t round)
       : library_(library), rule_(rule), round_(round) {}
 
-  // `sums`: of CodePass. `wanted`: by group of the block; empty: all.
+  // `sums`: of CodePass.
   struct Step {
     const Active& active;
     uint64_t step;
-    const std::vector<uint8_t>& wanted;
+    const WantedGroups& wanted;
     const Sums& sums;
   };
   // Of a round but the last: writes fields. False where something does not fit.

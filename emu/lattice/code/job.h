@@ -47,8 +47,9 @@ struct Job {
   const Entry* entries;
   const EntryGroup* groups;
   const uint32_t* group_of;  // the block's groups that have entries; null: all
-  uint32_t group_count;
-  const uint8_t* wanted;  // by group of the block; null: all
+  const uint32_t* chosen;    // which of these to work on; null: all
+  uint32_t count;            // of them
+  const uint8_t* wanted;     // of these the wanted ones, by group of the block; null: all
 
   // Of a bonded program. A slot is entry * kGroup + lane.
   double* const* bonds;          // [number][slot]
@@ -81,7 +82,8 @@ struct FinishJob {
   const uint32_t* id;  // null: the index is the id
   uint32_t begin, end;
   const double* const* sums;  // as of Job
-  const uint8_t* wanted;      // by group of the block; null: all
+  const uint32_t* chosen;     // groups of the block to work on; null: all
+  uint32_t count;             // of them
   const uint32_t* cell;
   const uint8_t* awake;  // by cell; null: all
   double edge, inverse_edge, guard, inverse_guard;

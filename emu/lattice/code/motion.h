@@ -20,6 +20,7 @@ inline V place_in_cell(const FinishJob& job, int axis, ptrdiff_t i) {
 
 inline W awake_lanes(const FinishJob& job, ptrdiff_t i) {
   const ptrdiff_t left = ptrdiff_t{job.end} - i;
+  if (left <= 0) return W{};
   uint32_t lanes = left >= kLanes ? (1u << kLanes) - 1 : (1u << left) - 1;
   if (job.awake != nullptr)
     for (int l = 0; l < kLanes; ++l)

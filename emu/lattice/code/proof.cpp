@@ -183,7 +183,9 @@ class FinishTrial {
         rule_(rule),
         last_(round + 1 == program.rounds.size()),
         pass_(program, program.rounds[round], rule),
-        moves_(moves_for(program, kParticles)) {}
+        moves_(moves_for(program, kParticles)) {
+    only_.awake = {0};
+  }
 
   bool agree(const Particles& particles, const uint8_t* awake, const Sums& sums, uint32_t group) {
     Particles mine = copy_of(particles, particles.cell), other = copy_of(particles, particles.cell);
@@ -204,7 +206,7 @@ class FinishTrial {
       active.awake = other_active.awake = awake;
       active.changed = my_changes.data(), other_active.changed = other_changes.data();
     }
-    const FinishCodePass::Step step{active, group, all_, biased};
+    const FinishCodePass::Step step{active, group, only_, biased};
     const bool fits = last_ ? code_.fits(mine, my_block, step) : code_.run(mine, my_block, step);
     if (fits != pass_.run(other, other_block, other_active, group, of_group, moves_)) return false;
     if (!fits && last_) return true;  // nothing moves
@@ -224,7 +226,7 @@ class FinishTrial {
   bool last_;
   FinishPass pass_;
   Moves moves_;
-  const std::vector<uint8_t> all_ = {};
+  WantedGroups only_;  // of a block of one group
 };
 
 }  // namespace

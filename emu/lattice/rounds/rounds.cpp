@@ -150,14 +150,14 @@ bool Rounds::finish(size_t k, size_t b, Block& block, Particles& particles, cons
   Part& part = parts_[b];
   if (!compiled()) return part.finishes[k]->run(particles, block, active, step, part.sums[k], moves_);
   const FinishCodePass& code = finish_code_[k];
-  const FinishCodePass::Step of{active, step, part.wanted.awake, part.sums[k]};
+  const FinishCodePass::Step of{active, step, part.wanted, part.sums[k]};
   return k + 1 < program_.rounds.size() ? code.run(particles, block, of) : code.fits(particles, block, of);
 }
 
 void Rounds::move(size_t b, Block& block, Particles& particles, const Active& active, uint64_t step) {
   const Part& part = parts_[b];
   if (compiled())
-    finish_code_.back().move(particles, block, {active, step, part.wanted.awake, part.sums.back()});
+    finish_code_.back().move(particles, block, {active, step, part.wanted, part.sums.back()});
   else
     move_block(rule_, moves_, active, particles, block);
 }
