@@ -239,15 +239,22 @@ inline V shifted(V a, V by) {
   const V scale = power_of_two(bits), inexact = scale + scale * 0x1p-52;
   return by >= V{} ? a * scale : rounded(a, inexact);
 }
-inline double noise_lane(int64_t seed, double a, double b, double c, int64_t width) {
-  const auto i = static_cast<int64_t>(a), j = static_cast<int64_t>(b);
-  const uint64_t mixed =
-      Hash().add(seed).add(i < j ? i : j).add(i < j ? j : i).add(static_cast<int64_t>(c)).value();
-  return static_cast<double>(static_cast<int64_t>(mixed) >> (64 - width));
+// Hash::add, of a number for each lane. Compilers make vectors of the products.
+inline U hash_added(U hash, W value) {
+  U z = (hash ^ reinterpret_cast<U>(value)) + 0x9e3779b97f4a7c15u;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
 }
+// A whole number below 2^51 in magnitude, as an integer.
+inline W integer(V a) { return reinterpret_cast<W>(a + splat(kMagic)) - reinterpret_cast<W>(splat(kMagic)); }
+// Op::noise: the hash's upper bits, with a sign. Its `width` is below 52, as doubles hold it.
 inline V noise(int64_t seed, V a, V b, V c, int64_t width) {
-#define CUBOCT_NOISE(l) noise_lane(seed, a[l], b[l], c[l], width)
-  return V{CUBOCT_EACH(CUBOCT_NOISE)};
+  const U seeded = U{} + Hash().add(seed).value();
+  const U mixed =
+      hash_added(hash_added(hash_added(seeded, integer(least(a, b))), integer(most(a, b))), integer(c));
+  const U biased = (mixed ^ (U{} + (uint64_t{1} << 63))) >> (64 - width);
+  return fraction(biased) - splat(static_cast<double>(int64_t{1} << (width - 1)));
 }
 
 }  // namespace
