@@ -21,4 +21,5 @@ install(TARGETS ${installed} RUNTIME_DEPENDENCY_SET libraries RUNTIME DESTINATIO
 install(RUNTIME_DEPENDENCY_SET libraries
   PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(c|m|mvec|dl|rt|pthread|resolv|util|anl)\\.so"
   LIBRARY DESTINATION lib)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/rules DESTINATION lib FILES_MATCHING PATTERN "*.so")  # kept_rules
 install(DIRECTORY scenes technologies DESTINATION .)

@@ -53,7 +53,9 @@ void EngineOptions::add_machines(Command& command) {
       .option(
           "--rule-code", rule_code,
           "how lattice or gpu runs a rule of text: interpreted; of lattice, compiled before the first step; "
-          "automatic (default): lattice compiles once the run has lasted, gpu where CUDA's compiler is found")
+          "automatic (default): lattice compiles once the run has lasted, unless the rule ships, gpu where "
+          "CUDA's "
+          "compiler is found")
       .one_of({"automatic", "interpreted", "compiled"});
 }
 

@@ -27,7 +27,7 @@ class LatticeProgram : public EngineProgram {
     app.option("--simd", engine.simd, "Vector units: avx512, avx2 or portable; the widest without it");
     app.option("--rule-code", rule_code_,
                "How a rule of text runs: interpreted, compiled before the first step, or automatic: compiled "
-               "once the run has lasted some seconds")
+               "with this program if it ships, else once the run has lasted some seconds")
         .one_of({"automatic", "interpreted", "compiled"})
         .show_default();
     app.option("--cut", engine.cut, "How ranks share the cells: bricks, or slabs along x, y or z")
