@@ -91,6 +91,7 @@ struct Block {
   // added; a vector may overhang the end, where the next lap's first kGroup sums continue.
   std::array<PaddedArray<double>, 3> ring;
   uint32_t ring_mask = 0;
+  uint32_t window = 0;  // particles that entries of `inside` lead ahead, at most
 
   // Answers of a step.
   std::vector<Crossing> crossings;  // indices

@@ -56,7 +56,6 @@ struct LatticeEngine::Impl {
 
   // program_step.cpp
   void run_rounds(const Active& active);
-  void keep_fields();
   void compile_rounds();
   void take_kept_code();
   void compile_if_worth();
@@ -67,7 +66,6 @@ struct LatticeEngine::Impl {
   void gather(std::vector<int64_t>& numbers, const std::function<Stretch(uint32_t id)>& of, To whom) const;
   Stretch fields_of(uint32_t id) const;
   Stretch bonds_of(uint32_t id) const;
-  [[noreturn]] void fail_as_golden() const;
 
   // lists.cpp
   void refresh_lists();
@@ -104,7 +102,6 @@ struct LatticeEngine::Impl {
   Kernels kernels_;
   std::optional<graph::FixedProgram> own_program_;  // of a pair law in cells that are no cubes
   std::optional<Rounds> rounds_;                    // of a program; else the kernels step the pair law
-  std::vector<PaddedArray<double>> fields_before_;  // as the step found them
   uint64_t interpreted_ = 0;                        // entries that rounds_ met so far
   bool may_compile_ = true;
   double cutoff_;  // cells

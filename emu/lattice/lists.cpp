@@ -98,7 +98,7 @@ void LatticeEngine::Impl::build() {
     store_by_cell(), ++counters_.sorts;
   {
     Bins bins(lattice_, members_, index_, particles_, snapshot_.position_frac, threads_);
-    if (rounds_) rounds_->cut(blocks_, snapshot_.room);
+    if (rounds_) rounds_->cut(blocks_.size());
     for_each_block([&](Block& block) {
       Search search(lattice_, rows_, cutoff_ + skin_, bins);
       if (rounds_ && rounds_->bonded())

@@ -133,6 +133,7 @@ uint32_t window_of(const Block& block, uint32_t k) {
 
 // Room for sums up to `window` ahead, an entry's own width, and the group at hand.
 void make_ring(Block& block, uint32_t window) {
+  block.window = std::max(block.window, window);
   const uint32_t size = std::bit_ceil(window + 2 * kGroup);
   if (size <= block.ring_mask + 1) return;
   block.ring_mask = size - 1;
@@ -154,7 +155,7 @@ void build_list(const KernelRule& rule, const Particles& particles, uint32_t gho
     edge->pairs.entries.reserve(kUsualEntries * block.groups());
   }
   block.plain.assign(block.groups(), 1);
-  block.ring_mask = 0;
+  block.ring_mask = block.window = 0;
   uint32_t window = kGroup;
   // A particle's place is not where the bins have it, but it was rounded from its position just now.
   const int P = rule.rule->widths.position_frac;

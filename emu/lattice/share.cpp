@@ -52,9 +52,7 @@ void LatticeEngine::Impl::make_room(uint32_t stored, uint32_t ghosts) {
   if (rounds_) {
     const auto numbers = static_cast<size_t>(rounds_->program().numbers());
     particles_.fields.clear();
-    fields_before_.clear();
-    for (size_t f = 0; f < numbers; ++f)
-      particles_.fields.emplace_back(room), fields_before_.emplace_back(room);
+    for (size_t f = 0; f < numbers; ++f) particles_.fields.emplace_back(room);
   }
   snapshot_.room = room;
 }

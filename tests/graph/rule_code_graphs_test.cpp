@@ -54,13 +54,10 @@ void compare_graphs(uint64_t first, uint64_t count, std::map<graph::Op, int>& me
   const emu::BondSpace space;
   emu::KernelRule rule;
   rule.cell = 4096, rule.inverse_cell = 1.0 / 4096, rule.guard = rule.inverse_guard = 1;
-  for (size_t k = 0; k < program.rounds.size(); ++k) {
-    const emu::CodePass code(library, program, space, k, false);
-    emu::PairPass pass(program, program.rounds[k], space, false);
-    EXPECT_NO_THROW(emu::prove(code, pass, program, program.rounds[k], space, false)) << "seed " << first + k;
-    const emu::FinishCodePass finish(library, rule, k);
-    EXPECT_NO_THROW(emu::prove(finish, program, rule, k)) << "seed " << first + k;
-  }
+  const std::vector<double> constants;
+  const emu::RoundCode code{program, rule, space, false, constants, &library};
+  for (size_t k = 0; k < program.rounds.size(); ++k)
+    EXPECT_NO_THROW(emu::prove(code, k)) << "seed " << first + k;
 }
 
 TEST(RuleCodeGraphs, EqualTheInterpreter) {

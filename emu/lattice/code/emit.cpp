@@ -93,9 +93,8 @@ constexpr const char* kMeetFarEnds = R"(
           for (int l = 0; l < kLanes; ++l) {
             if (far[l] == 0) continue;
             double ends[3] = {apart[0][l], apart[1][l], apart[2][l]};
-            bool fits = true;
-            if (!job.meet(job.owner, static_cast<uint32_t>(i) + l, slot + l, ends, &fits)) near[l] = 0;
-            if (!fits) bad[l] = -1;
+            if (!job.meet(job.owner, static_cast<uint32_t>(i) + l, static_cast<uint32_t>(j) + l, slot + l, ends))
+              near[l] = 0;
             for (int a = 0; a < 3; ++a) apart[a][l] = ends[a];
           }
 )";
@@ -119,6 +118,11 @@ std::string take_bonds(const graph::FixedProgram& program, const graph::Round& r
       "            if (changed[l] != 0)\n"
       "              job.changed(job.owner, static_cast<uint32_t>(i) + l, static_cast<uint32_t>(j) + l);\n";
   return text;
+}
+
+bool has_check(const graph::Graph& graph, const std::vector<int>& nodes) {
+  return std::ranges::any_of(
+      nodes, [&](int n) { return graph.nodes[static_cast<size_t>(n)].op == graph::Op::check; });
 }
 
 // `sum` takes the term of lanes that are near, with `sign` times its own.
@@ -151,17 +155,18 @@ std::string round_text(const graph::FixedProgram& program, size_t k, Ends ends, 
   };
 
   std::string text = fmt::format(
-      "extern \"C\" bool {}(const Job& job) {{\n"
+      "extern \"C\" void {}(const Job& job) {{\n"
       "  const double* const __restrict K = job.numbers.constants;\n"
       "  const CodeTable* const __restrict T = job.numbers.tables;\n"
       "  static_cast<void>(K), static_cast<void>(T);\n"
       "  W bad = W{{}};\n"
       "  for (uint32_t n = 0; n < job.count; ++n) {{\n"
-      "    const uint32_t g = job.chosen != nullptr ? job.chosen[n] : n;\n"
+      "    const uint32_t g = job.chosen != nullptr ? job.chosen[n] : job.first + n;\n"
       "    const uint32_t group = job.group_of != nullptr ? job.group_of[g] : g;\n"
       "    if (job.wanted != nullptr && job.wanted[group] == 0) continue;\n"
       "    const EntryGroup of = job.groups[g];\n"
       "    if (of.near == 0) continue;\n"
+      "    const uint32_t place = (job.group_of != nullptr ? g : group) * kEntryLanes & job.mask;\n"
       "    for (uint32_t at = 0; at < kEntryLanes; at += kLanes) {{\n"
       "      const ptrdiff_t i = job.begin + ptrdiff_t{{group}} * kEntryLanes + at;\n"
       "      const V x[3] = {{load(job.x[0] + i), load(job.x[1] + i), load(job.x[2] + i)}};\n",
@@ -192,6 +197,16 @@ std::string round_text(const graph::FixedProgram& program, size_t k, Ends ends, 
       "        if (!any(near)) continue;\n",
       pair.truth(round.when));
   text += pair.statements(rest(late), true, "        ");
+  if (has_check(round.pair, late))
+    text +=
+        "        if (__builtin_expect(any(bad), 0)) {\n"
+        "          for (int l = 0; l < kLanes; ++l)\n"
+        "            if (bad[l] != 0)\n"
+        "              job.misfit(job.owner, static_cast<uint32_t>(i) + l, static_cast<uint32_t>(j) + l, "
+        "entry,\n"
+        "                         size_t{e} * kEntryLanes + at + l);\n"
+        "          bad = W{};\n"
+        "        }\n";
   for (size_t t = 0; t < parts.terms.size(); ++t) {
     const GraphText::Term term = pair.term(parts.terms[t]);
     text += fmt::format("        const V product{} = select(near, {}, V{{}});\n", t, term.product);
@@ -200,7 +215,7 @@ std::string round_text(const graph::FixedProgram& program, size_t k, Ends ends, 
     if (ends != Ends::own)
       text += fmt::format(
           "        {{\n"
-          "          double* const to = job.sums[{0}] + (j - job.begin);\n"
+          "          double* const to = job.sums[{0}] + ((j - job.begin) & job.mask);\n"
           "          store(to, {1});\n"
           "        }}\n",
           t, take_term(term, t, "load(to)", !turned && parts.signs[t] < 0));
@@ -211,11 +226,11 @@ std::string round_text(const graph::FixedProgram& program, size_t k, Ends ends, 
     for (size_t t = 0; t < parts.terms.size(); ++t)
       text += fmt::format(
           "      {{\n"
-          "        double* const to = job.sums[{0}] + (i - job.begin);\n"
+          "        double* const to = job.sums[{0}] + place + at;\n"
           "        store(to, load(to) + (sum{0} - splat(kMagic)));\n"
           "      }}\n",
           t);
-  return text + "    }\n  }\n  return !any(bad);\n}\n\n";
+  return text + "    }\n  }\n}\n\n";
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ std::string finish_input(const graph::FixedProgram& program, const graph::Round&
   const int index = node.index, axis = node.axis;
   switch (node.source) {
     case Source::sum:
-      return fmt::format("load(job.sums[{}] + (i - job.begin)) - splat(kMagic)", round.place(index) + axis);
+      return fmt::format("load(job.sums[{}] + ((i - job.begin) & job.mask)) - splat(kMagic)",
+                         round.place(index) + axis);
     case Source::own_x:
       return fmt::format("place_in_cell(job, {}, i)", axis);
     case Source::own_v:
@@ -39,25 +40,27 @@ std::string finish_input(const graph::FixedProgram& program, const graph::Round&
 }
 
 // Around `body`, which knows i, the lanes that are awake, and `bad`.
-std::string over_particles(const std::string& name, const std::string& body, bool moves) {
+std::string over_particles(const std::string& head, const std::string& body, const std::string& tail) {
   return fmt::format(
-      "extern \"C\" bool {}(const FinishJob& job) {{\n"
+      "extern \"C\" {}(const FinishJob& job) {{\n"
       "  const double* const __restrict K = job.numbers.constants;\n"
       "  const CodeTable* const __restrict T = job.numbers.tables;\n"
       "  static_cast<void>(K), static_cast<void>(T);\n"
-      "  W bad = W{{}};\n{}"
+      "  W bad = W{{}};\n"
+      "  V fastest2 = V{{}};\n"
       "  for (uint32_t n = 0; n < job.count; ++n) {{\n"
-      "    const ptrdiff_t first = job.begin + ptrdiff_t{{job.chosen != nullptr ? job.chosen[n] : n}} * "
-      "kEntryLanes;\n"
-      "    for (ptrdiff_t i = first; i < first + kEntryLanes; i += kLanes) {{\n"
+      "    const ptrdiff_t group = job.chosen != nullptr ? job.chosen[n] : job.first + n;\n"
+      "    for (ptrdiff_t at = 0; at < kEntryLanes; at += kLanes) {{\n"
+      "      const ptrdiff_t i = job.begin + group * kEntryLanes + at;\n"
       "      const W awake = awake_lanes(job, i);\n"
       "      if (!any(awake)) continue;\n"
       "{}"
       "    }}\n"
-      "  }}\n{}"
-      "  return !any(bad);\n"
+      "  }}\n"
+      "  static_cast<void>(bad), static_cast<void>(fastest2);\n"
+      "{}"
       "}}\n\n",
-      name, moves ? "  V fastest2 = V{};\n" : "", body, moves ? "  tell_fastest(job, fastest2);\n" : "");
+      head, body, tail);
 }
 
 std::vector<int> checks_among(const graph::Graph& graph, const std::vector<int>& nodes) {
@@ -96,17 +99,20 @@ std::string finish_text(const graph::FixedProgram& program, size_t k, size_t fir
   const graph::Round& round = program.rounds[k];
   const bool last = k + 1 == program.rounds.size();
   Surroundings surroundings{[&](const Node& node) { return finish_input(program, round, node); }, "awake",
-                            first_table, last};
+                            first_table, true};
   const GraphText finish(round.finish, constants, surroundings);
   const std::vector<int> nodes = needed_by(round.finish, finish_outputs(program, round));
   std::string body = finish.statements(nodes, false, "      ") + keep_all(program, round, finish);
   if (last) body += move_all(program.motion, finish);
   body += "      tell(job, i, moved);\n";
-  std::string text = over_particles(name_of_finish(k), body, last);
-  if (!last) return text;
+  const std::string text =
+      over_particles("void " + name_of_finish(k), body, last ? "  tell_fastest(job, fastest2);\n" : "");
+  const std::vector<int> checks = checks_among(round.finish, nodes);
+  if (checks.empty()) return text;
   surroundings.all_fit = false;
-  const std::vector<int> checked = needed_by(round.finish, checks_among(round.finish, nodes));
-  return text + over_particles(name_of_fits(k), finish.statements(checked, false, "      "), false);
+  return text + over_particles("bool " + name_of_fits(k),
+                               finish.statements(needed_by(round.finish, checks), false, "      "),
+                               "  return !any(bad);\n");
 }
 
 }  // namespace cuboct::emu

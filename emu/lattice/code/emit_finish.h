@@ -9,9 +9,7 @@
 
 namespace cuboct::emu {
 
-// Functions that the text defines, each a FinishCode. Of the last round `fits` runs the checks alone and
-// writes nothing; `finish` writes all and checks nothing. Of another round there is `finish` alone, which
-// writes fields and checks.
+// Functions that the text defines: a FinishCode, and where the finish has checks a FitsCode.
 std::string name_of_finish(size_t round);
 std::string name_of_fits(size_t round);
 

@@ -31,7 +31,12 @@ struct CodeNumbers {
   int64_t types;
 };
 
-// Arrays are by index of a particle unless said otherwise, and readable a group beyond either end.
+// A round's pairs over some groups of a block. Arrays are by index of a particle unless said otherwise, and
+// readable a group beyond either end.
+//
+// Sums have kMagic added (kernel_rule.h). Of a list whose groups are all of the block's, that of particle p
+// stands at (p - begin) & mask: a ring, that holds kEntryLanes more behind its end for entries that overhang
+// it. Of an edge, whose groups are `group_of`, the g-th group's stand from g * kEntryLanes on.
 struct Job {
   CodeNumbers numbers;
   double step;
@@ -42,34 +47,37 @@ struct Job {
   const uint32_t* id;        // null: the index is the id
   const double (*shift)[3];  // Particles::shift
   uint32_t begin;            // the block's first particle
-  double* const* sums;       // by term, [index - begin]; kMagic where nothing is added yet
+  double* const* sums;       // by term
+  uint32_t mask;
 
   const Entry* entries;
   const EntryGroup* groups;
-  const uint32_t* group_of;  // the block's groups that have entries; null: all
-  const uint32_t* chosen;    // which of these to work on; null: all
-  uint32_t count;            // of them
-  const uint8_t* wanted;     // of these the wanted ones, by group of the block; null: all
+  const uint32_t* group_of;  // of an edge: the block's groups that have entries; else null
+  // Which of `groups` to work on: `chosen`, or, where that is null, those from `first` on.
+  const uint32_t* chosen;
+  uint32_t first, count;
+  const uint8_t* wanted;  // of these the wanted ones, by group of the block; null: all
 
-  // Of a bonded program. A slot is entry * kGroup + lane.
+  // Of a bonded program. A slot is entry * kEntryLanes + lane.
   double* const* bonds;          // [number][slot]
   const uint32_t* kind;          // [slot]
   const double* bond_constants;  // [kind * bond_constant_count + constant]
   int64_t bond_constant_count;
   double cell;  // ends nearer than that along each axis are in neighbouring cells
+
   void* owner;
-  // Of ends that are not so near: whether they meet. Then `apart` becomes that of their images. Else *fits
-  // becomes false if the bond counts.
-  bool (*meet)(void* owner, uint32_t own, uint64_t slot, double apart[3], bool* fits);
+  // Of ends that are not so near: whether they meet. Then `apart` becomes that of their images.
+  bool (*meet)(void* owner, uint32_t own, uint32_t other, uint64_t slot, double apart[3]);
   // A bond of these two has another number; null: nobody asks.
   void (*changed)(void* owner, uint32_t own, uint32_t other);
+  // A check of this pair found what does not fit. Its bond is not written yet.
+  void (*misfit)(void* owner, uint32_t own, uint32_t other, const Entry& entry, uint64_t slot);
 };
 
-// False where something does not fit. The particles' ends of each entry: the terms go to the sums of the
-// lower one, of the other one, or of both.
-using MeetCode = bool (*)(const Job&);
+// The particles' ends of each entry: the terms go to the sums of the lower one, of the other one, or of both.
+using MeetCode = void (*)(const Job&);
 
-// Of a round's finish. Fields are those of Particles; arrays are by index unless said otherwise.
+// A round's finish over some groups of a block: arrays and groups as above.
 struct FinishJob {
   CodeNumbers numbers;
   double step;
@@ -79,11 +87,12 @@ struct FinishJob {
   double* u[3];  // null: nobody has a displacement
   double* const* fields;
   const uint8_t* type;
-  const uint32_t* id;  // null: the index is the id
+  const uint32_t* id;
   uint32_t begin, end;
-  const double* const* sums;  // as of Job
-  const uint32_t* chosen;     // groups of the block to work on; null: all
-  uint32_t count;             // of them
+  const double* const* sums;
+  uint32_t mask;
+  const uint32_t* chosen;
+  uint32_t first, count;
   const uint32_t* cell;
   const uint8_t* awake;  // by cell; null: all
   double edge, inverse_edge, guard, inverse_guard;
@@ -94,7 +103,9 @@ struct FinishJob {
   double* fastest2;  // the largest v.v so far
 };
 
-// Of awake particles. False where something does not fit.
-using FinishCode = bool (*)(const FinishJob&);
+// Whether all that is awake fits; writes nothing.
+using FitsCode = bool (*)(const FinishJob&);
+// Of particles that fit: writes fields and, in the last round, moves.
+using FinishCode = void (*)(const FinishJob&);
 
 }  // namespace cuboct::emu

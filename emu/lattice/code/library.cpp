@@ -136,7 +136,7 @@ void CodeLibrary::load(const std::string& path, size_t rounds) {
     for (const Ends ends : {Ends::own, Ends::other, Ends::both})
       meet_.back().push_back(reinterpret_cast<MeetCode>(find(name_of(k, ends))));
     finish_.push_back(reinterpret_cast<FinishCode>(find(name_of_finish(k))));
-    fits_.push_back(reinterpret_cast<FinishCode>(find(name_of_fits(k))));
+    fits_.push_back(reinterpret_cast<FitsCode>(find(name_of_fits(k))));
   }
 }
 

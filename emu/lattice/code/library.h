@@ -26,7 +26,7 @@ class CodeLibrary {
 
   MeetCode meet(size_t round, Ends ends) const;  // null: the code has none
   FinishCode finish(size_t round) const { return finish_[round]; }
-  FinishCode fits(size_t round) const { return fits_[round]; }  // null: not of the last round
+  FitsCode fits(size_t round) const { return fits_[round]; }  // null: all fits
   CodeNumbers numbers() const;
 
  private:
@@ -38,7 +38,8 @@ class CodeLibrary {
   std::vector<std::vector<double>> type_constants_, pair_constants_;
   std::vector<const double*> type_pointers_, pair_pointers_;
   std::vector<std::vector<MeetCode>> meet_;  // [round][ends]
-  std::vector<FinishCode> finish_, fits_;    // by round
+  std::vector<FinishCode> finish_;           // by round
+  std::vector<FitsCode> fits_;
 };
 
 }  // namespace cuboct::emu

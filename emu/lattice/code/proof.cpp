@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <type_traits>
 
-#include "emu/lattice/rounds/finish_pass.h"
 #include "model/base/error.h"
 
 namespace cuboct::emu {
@@ -73,14 +73,13 @@ class RandomPairs {
  public:
   RandomPairs(const graph::FixedProgram& program, const BondSpace& space, bool once, uint64_t seed)
       : random_(seed), particles_(random_.particles(program)) {
-    block_.begin = 0, block_.end = kParticles;
     if (space.rows != nullptr && !space.rows->kind.empty())
       fill_bonds(program, space, once);
     else
-      fill_list(block_.inside.entries, block_.inside.groups);
+      fill_list(list_.entries, list_.groups);
   }
   const Particles& particles() const { return particles_; }
-  const Block& block() const { return block_; }
+  const PairList& list() const { return list_; }
   const BondList& bonds() const { return bonds_; }
 
  private:
@@ -111,27 +110,15 @@ class RandomPairs {
 
   RandomNumbers random_;
   Particles particles_;
-  Block block_;
+  PairList list_;
   BondList bonds_;
 };
 
-Sums sums_for(const graph::Round& round) {
-  Sums sums;
-  for (int n = 0; n < round.numbers(); ++n) sums.emplace_back(kParticles);
-  return sums;
+bool same(const PaddedArray<double>& a, const PaddedArray<double>& b) {
+  return std::equal(a.data(), a.data() + a.size(), b.data());
 }
-
-// `bias`: what is added to each of `b`.
-bool same(const PaddedArray<double>& a, const PaddedArray<double>& b, double bias = 0) {
-  for (size_t n = 0; n < a.size(); ++n)
-    if (a[n] != b[n] - bias) return false;
-  return true;
-}
-bool same(const std::vector<PaddedArray<double>>& a, const std::vector<PaddedArray<double>>& b,
-          double bias = 0) {
-  for (size_t k = 0; k < a.size(); ++k)
-    if (!same(a[k], b[k], bias)) return false;
-  return true;
+bool same(const std::vector<PaddedArray<double>>& a, const std::vector<PaddedArray<double>>& b) {
+  return std::ranges::equal(a, b, [](const auto& one, const auto& other) { return same(one, other); });
 }
 
 BondList copy_of(const BondList& bonds) {
@@ -142,7 +129,7 @@ BondList copy_of(const BondList& bonds) {
   return copy;
 }
 
-Particles copy_of(const Particles& particles, const uint32_t* cell) {
+Particles copy_of(const Particles& particles) {
   Particles copy;
   for (size_t a = 0; a < 3; ++a) {
     copy.x[a] = particles.x[a].copy(), copy.v[a] = particles.v[a].copy();
@@ -150,7 +137,7 @@ Particles copy_of(const Particles& particles, const uint32_t* cell) {
   }
   for (const auto& field : particles.fields) copy.fields.push_back(field.copy());
   copy.type = particles.type.copy();
-  copy.cell = cell;
+  copy.cell = particles.cell;
   return copy;
 }
 
@@ -162,10 +149,16 @@ bool same(const Particles& a, const Particles& b) {
   return same(a.fields, b.fields);
 }
 
-bool same(const std::vector<Crossing>& a, const std::vector<Crossing>& b) {
-  return std::ranges::equal(a, b, [](const Crossing& one, const Crossing& other) {
-    return one.particle == other.particle && one.away == other.away;
-  });
+// A ring of sums, as kernel_rule.h has them.
+Sums sums_for(const graph::Round& round) {
+  Sums sums;
+  for (int n = 0; n < round.numbers(); ++n) sums.emplace_back(kParticles, kMagic);
+  return sums;
+}
+// What overhangs the end belongs to its beginning.
+void fold(Sums& sums) {
+  for (auto& sum : sums)
+    for (uint32_t l = 0; l < kGroup; ++l) sum[l] += sum[kParticles + l] - kMagic;
 }
 
 [[noreturn]] void distrust(const std::string& what) {
@@ -173,106 +166,179 @@ bool same(const std::vector<Crossing>& a, const std::vector<Crossing>& b) {
                    "--rule-code interpreted, or another compiler (CXX)");
 }
 
-// What both make of one group, whose particles fit or do not.
-class FinishTrial {
+// Pairs by one of both ways, and whom they ask and tell.
+class PairTrial {
  public:
-  FinishTrial(const FinishCodePass& code, const graph::FixedProgram& program, const KernelRule& rule,
-              size_t round)
+  PairTrial(const RoundCode& code, size_t round, const RandomPairs& random, PairPass* interpreter)
       : code_(code),
-        program_(program),
-        rule_(rule),
-        last_(round + 1 == program.rounds.size()),
-        pass_(program, program.rounds[round], rule),
-        moves_(moves_for(program, kParticles)) {
-    only_.awake = {0};
+        round_(round),
+        interpreter_(interpreter),
+        particles_(copy_of(random.particles())),
+        bonds_(copy_of(random.bonds())),
+        sums_(sums_for(code.program.rounds[round])) {
+    block_.begin = 0, block_.end = kParticles, block_.inside = random.list();
+    for (uint32_t g = 0; g < kParticles / kGroup; ++g) all_groups_.push_back(g);
   }
 
-  bool agree(const Particles& particles, const uint8_t* awake, const Sums& sums, uint32_t group) {
-    Particles mine = copy_of(particles, particles.cell), other = copy_of(particles, particles.cell);
-    Block my_block, other_block;
-    for (Block* block : {&my_block, &other_block})
-      block->begin = group * kGroup, block->end = block->begin + kGroup;
-    Sums of_group, biased;
-    for (const auto& sum : sums) {
-      of_group.emplace_back(size_t{kGroup}), biased.emplace_back(size_t{kGroup});
-      for (uint32_t l = 0; l < kGroup; ++l) {
-        of_group.back()[l] = sum[my_block.begin + l];
-        biased.back()[l] = of_group.back()[l] + kMagic;
-      }
+  void run(uint64_t step) {
+    const Active active;
+    const RoundStep of{particles_, block_, active, step};
+    const Jobs jobs(of, code_.rule, code_.library->numbers(), bonds_);
+    Job job = jobs.pairs();
+    const std::vector<double*> sums = pointers(sums_);
+    job.sums = sums.data(), job.mask = kParticles - 1;
+    job.bond_constants = code_.constants.data();
+    job.bond_constant_count = static_cast<int64_t>(code_.program.bond_constants.size());
+    job.owner = this, job.meet = meet, job.misfit = misfit;
+    job.count = kParticles / kGroup;
+    const bool bonded = code_.program.bonded;
+    job.entries = bonded ? bonds_.entries.data() : block_.inside.entries.data();
+    job.groups = bonded ? bonds_.own.data() : block_.inside.groups.data();
+    job.group_of = all_groups_.data();
+    meet(Ends::own, job);
+    job.group_of = nullptr;
+    if (code_.once) {
+      if (bonded) job.groups = bonds_.both.data();
+      meet(Ends::both, job);
+    } else if (!bonded) {
+      for (const Ends ends : {Ends::own, Ends::other}) meet(ends, job);
     }
-    std::vector<uint8_t> my_changes(kParticles), other_changes(kParticles);
-    Active active, other_active;
-    if (awake != nullptr) {
-      active.awake = other_active.awake = awake;
-      active.changed = my_changes.data(), other_active.changed = other_changes.data();
-    }
-    const FinishCodePass::Step step{active, group, only_, biased};
-    const bool fits = last_ ? code_.fits(mine, my_block, step) : code_.run(mine, my_block, step);
-    if (fits != pass_.run(other, other_block, other_active, group, of_group, moves_)) return false;
-    if (!fits && last_) return true;  // nothing moves
-    if (last_) {
-      code_.move(mine, my_block, step);
-      move_block(rule_, moves_, other_active, other, other_block);
-    }
-    return same(mine, other) && same(my_block.crossings, other_block.crossings) &&
-           my_changes == other_changes &&
-           std::abs(my_block.fastest2 - other_block.fastest2) <= 1e-12 * other_block.fastest2;
+    fold(sums_);
+  }
+
+  bool agrees(const PairTrial& other) const {
+    return same(sums_, other.sums_) && same(bonds_.numbers, other.bonds_.numbers) &&
+           misfits_ == other.misfits_ && lost_ == other.lost_;
   }
 
  private:
-  const FinishCodePass& code_;
-  const graph::FixedProgram& program_;
-  const KernelRule& rule_;
-  bool last_;
-  FinishPass pass_;
-  Moves moves_;
-  WantedGroups only_;  // of a block of one group
+  void meet(Ends ends, const Job& job) {
+    interpreter_ != nullptr ? interpreter_->run(job, ends) : code_.library->meet(round_, ends)(job);
+  }
+  static bool meet(void* owner, uint32_t own, uint32_t, uint64_t slot, double apart[3]) {
+    PairTrial& of = *static_cast<PairTrial*>(owner);
+    std::array<double, 3> ends{apart[0], apart[1], apart[2]};
+    const auto& x = of.particles_.x;
+    const bool meets = of.code_.space.meets({x[0][own], x[1][own], x[2][own]}, ends);
+    std::ranges::copy(ends, apart);
+    of.lost_ += !meets && !of.bonds_.is_broken(of.code_.program, of.code_.space, slot);
+    return meets;
+  }
+  // The interpreter tells some that fit, too.
+  static void misfit(void* owner, uint32_t, uint32_t, const Entry&, uint64_t) {
+    static_cast<PairTrial*>(owner)->misfits_ = true;
+  }
+
+  const RoundCode& code_;
+  size_t round_;
+  PairPass* interpreter_;
+  Particles particles_;
+  Block block_;
+  BondList bonds_;
+  Sums sums_;
+  std::vector<uint32_t> all_groups_;
+  bool misfits_ = false;
+  int lost_ = 0;
 };
 
-}  // namespace
+// The finish of one group by one of both ways, and what it tells.
+class FinishTrial {
+ public:
+  FinishTrial(const RoundCode& code, size_t round, const Particles& particles, FinishPass* interpreter)
+      : code_(code), round_(round), particles_(copy_of(particles)), interpreter_(interpreter) {
+    block_.begin = 0, block_.end = kParticles;
+  }
 
-void prove(const CodePass& code, PairPass& pass, const graph::FixedProgram& program,
-           const graph::Round& round, const BondSpace& space, bool once) {
-  const WantedGroups wanted;
+  bool run(Sums& sums, const uint8_t* awake, uint32_t group) {
+    const Active active{.awake = awake};
+    const RoundStep step{particles_, block_, active, group};
+    const Jobs jobs(step, code_.rule, code_.library->numbers(), none_);
+    FinishJob job = jobs.finish();
+    const std::vector<double*> pointers_to_sums = pointers(sums);
+    job.sums = pointers_to_sums.data(), job.mask = kParticles - 1;
+    job.first = group, job.count = 1;
+    job.owner = this;
+    job.changed = [](void* owner, uint32_t p) { static_cast<FinishTrial*>(owner)->changed_.push_back(p); };
+    job.crossed = [](void* owner, uint32_t p, const int8_t away[3]) {
+      static_cast<FinishTrial*>(owner)->crossings_.push_back({p, away[0], away[1], away[2]});
+    };
+    fits_ = interpreter_ != nullptr                  ? interpreter_->fits(job)
+            : code_.library->fits(round_) == nullptr ? true
+                                                     : code_.library->fits(round_)(job);
+    if (fits_) interpreter_ != nullptr ? interpreter_->run(job) : code_.library->finish(round_)(job);
+    return fits_;
+  }
+
+  // Squares of speeds are no whole numbers that doubles hold.
+  bool agrees(const FinishTrial& other) const {
+    return fits_ == other.fits_ && same(particles_, other.particles_) && changed_ == other.changed_ &&
+           crossings_ == other.crossings_ &&
+           std::abs(block_.fastest2 - other.block_.fastest2) <= 1e-12 * other.block_.fastest2;
+  }
+
+ private:
+  const RoundCode& code_;
+  size_t round_;
+  Particles particles_;
+  FinishPass* interpreter_;
+  Block block_;
+  BondList none_;
+  bool fits_ = true;
+  std::vector<uint32_t> changed_;
+  std::vector<std::array<int64_t, 4>> crossings_;
+};
+
+void prove_pairs(const RoundCode& code, size_t round) {
+  PairPass pass(code.program, code.program.rounds[round]);
   for (int batch = 0; batch < kBatches; ++batch) {
-    const RandomPairs random(program, space, once, static_cast<uint64_t>(batch) + 1);
-    const Active all;
-    const Scope scope{random.particles(), random.block(), all, static_cast<uint64_t>(batch)};
-    Sums mine = sums_for(round), other = sums_for(round);
-    BondList bonds = copy_of(random.bonds()), other_bonds = copy_of(random.bonds());
-    const bool fits = code.run({scope, wanted}, bonds, mine),
-               should_fit = pass.run(scope, other_bonds, other);
-    if (fits != should_fit || !same(other, mine, kMagic) || !same(bonds.numbers, other_bonds.numbers))
-      distrust("round '" + round.name + "'");
+    const RandomPairs random(code.program, code.space, code.once, static_cast<uint64_t>(batch) + 1);
+    PairTrial compiled(code, round, random, nullptr), interpreted(code, round, random, &pass);
+    compiled.run(static_cast<uint64_t>(batch)), interpreted.run(static_cast<uint64_t>(batch));
+    if (!compiled.agrees(interpreted)) distrust("round '" + code.program.rounds[round].name + "'");
   }
 }
 
-void prove(const FinishCodePass& code, const graph::FixedProgram& program, const KernelRule& rule,
-           size_t round) {
-  FinishTrial trial(code, program, rule, round);
-  const graph::Round& of = program.rounds[round];
-  std::vector<graph::Interval> ranges(static_cast<size_t>(of.numbers()));
-  for (const graph::Node& node : of.finish.nodes)
+std::vector<graph::Interval> ranges_of_sums(const graph::Round& round) {
+  std::vector<graph::Interval> ranges(static_cast<size_t>(round.numbers()));
+  for (const graph::Node& node : round.finish.nodes)
     if (node.op == graph::Op::input && node.source == graph::Source::sum)
-      ranges[static_cast<size_t>(of.place(node.index) + node.axis)] = node.range;
-  // Every third is asleep in half of the batches.
-  std::vector<uint32_t> cells;
-  std::vector<uint8_t> awake(kParticles + 8);
-  for (uint32_t p = 0; p < kParticles + kGroup; ++p)
-    cells.push_back(p % kParticles), awake[p % kParticles] = p % 3 != 0;
-  for (int batch = 0; batch < 4 * kBatches; ++batch) {
-    RandomNumbers random(static_cast<uint64_t>(batch) + 1000);
-    Particles particles = random.particles(program);
+      ranges[static_cast<size_t>(round.place(node.index) + node.axis)] = node.range;
+  return ranges;
+}
+
+void prove_finish(const RoundCode& code, size_t round) {
+  FinishPass pass(code.program, code.program.rounds[round]);
+  const std::vector<graph::Interval> ranges = ranges_of_sums(code.program.rounds[round]);
+  std::vector<uint32_t> cells(kParticles + kGroup);
+  std::iota(cells.begin(), cells.end(), 0);
+  for (uint64_t batch = 0; batch < 4 * kBatches; ++batch) {
+    RandomNumbers random(batch + 1000);
+    Particles particles = random.particles(code.program);
     particles.cell = cells.data();
     Sums sums;
     for (const graph::Interval& range : ranges) {
-      auto& sum = sums.emplace_back(size_t{kParticles});
-      for (uint32_t p = 0; p < kParticles; ++p) sum[p] = random.scaled(range);
+      auto& sum = sums.emplace_back(kParticles, kMagic);
+      for (uint32_t p = 0; p < kParticles; ++p) sum[p] += random.scaled(range);
     }
-    for (uint32_t group = 0; group < kParticles / kGroup; ++group)
-      if (!trial.agree(particles, batch % 2 == 1 ? awake.data() : nullptr, sums, group))
-        distrust("the finish of round '" + of.name + "'");
+    // All are awake, most, or one of each group, so that a group fits now and then.
+    std::vector<uint8_t> awake(cells.size() + kGroup);
+    for (uint32_t p = 0; p < kParticles; ++p)
+      awake[p] = batch % 4 == 1 ? p % 3 != 0 : p % kGroup == batch % 8;
+    for (uint32_t group = 0; group < kParticles / kGroup; ++group) {
+      FinishTrial compiled(code, round, particles, nullptr), interpreted(code, round, particles, &pass);
+      for (FinishTrial* trial : {&compiled, &interpreted})
+        trial->run(sums, batch % 4 == 0 ? nullptr : awake.data(), group);
+      if (!compiled.agrees(interpreted))
+        distrust("the finish of round '" + code.program.rounds[round].name + "'");
+    }
   }
+}
+
+}  // namespace
+
+void prove(const RoundCode& code, size_t round) {
+  prove_pairs(code, round);
+  prove_finish(code, round);
 }
 
 }  // namespace cuboct::emu

@@ -80,15 +80,20 @@ void BondList::build(const Block& block, const Particles& particles, const Index
       }
     }
     std::ranges::sort(bonds, {}, [](const Bond& b) { return std::tuple_cat(b.place(), std::tuple(b.lane)); });
-    for (const Ends ends : {Ends::own, Ends::both})
-      groups_of(ends).push_back({static_cast<uint32_t>(entries.size()), 0, 0});
+    both.push_back({static_cast<uint32_t>(entries.size()), 0, 0});
     const Bond* last = nullptr;
     for (const Bond& one : bonds) {
-      EntryGroup& group = groups_of(one.ends).back();
+      if (one.ends == Ends::own && (last == nullptr || last->ends != Ends::own)) {
+        own.push_back({static_cast<uint32_t>(entries.size()), 0, 0});
+        own_group.push_back((base - block.begin) / kGroup);
+      }
+      EntryGroup& group = one.ends == Ends::both ? both.back() : own.back();
       if (last == nullptr || last->place() != one.place()) {
         if (group.count++ == 0) group.begin = static_cast<uint32_t>(entries.size());
         group.near = group.count;
         entries.push_back({one.first, 0, one.shift});
+        if (one.ends == Ends::both)
+          window = std::max(window, static_cast<uint32_t>(one.first) + kGroup - base);
         for (auto* of : {&bond, &twin}) of->insert(of->end(), kGroup, kNoBond);
       }
       last = &one;
@@ -101,7 +106,7 @@ void BondList::build(const Block& block, const Particles& particles, const Index
       throw std::length_error("a list of more than 2^32 - 1 entries: use more threads");
   }
   add_kinds(rows);
-  for (int k = 0; k < number_count; ++k) numbers.emplace_back(bond.size()), before.emplace_back(bond.size());
+  for (int k = 0; k < number_count; ++k) numbers.emplace_back(bond.size());
 }
 
 // Lanes without a bond have the kind of one that is there: vectors look whether all are alike.

@@ -24,15 +24,18 @@ struct BondSpace {
 };
 
 struct BondList {
-  // A group for each of the block. Bonds inside the block whose terms are made once for both ends, at the
-  // lower one; and those with one end here. Both stand in one array of entries.
+  // Bonds inside the block whose terms are made once for both ends, at the lower one: a group for each of the
+  // block. And those with one end here, or seen from one: for the groups `own_group` that have any. Both
+  // stand in one array of entries.
   std::vector<Entry> entries;
   std::vector<EntryGroup> both, own;
+  std::vector<uint32_t> own_group;
+  uint32_t window = kGroup;          // particles that entries of `both` lead ahead, at most
   std::vector<uint64_t> bond, twin;  // [slot]: index into the rows, from either end; kNoBond: there is none
   static constexpr uint64_t kNoBond = ~uint64_t{0};
   std::vector<uint64_t> far;   // index into the rows: the partner is too far to be known to this rank
   PaddedArray<uint32_t> kind;  // [slot], of the rows
-  std::vector<PaddedArray<double>> numbers, before;  // [number][slot]: now, and when the step began
+  std::vector<PaddedArray<double>> numbers;  // [number][slot]
   static size_t slot(size_t entry, uint32_t lane) { return entry * kGroup + lane; }
 
   void build(const Block& block, const Particles& particles, const Index& index, const BondSpace& space,
@@ -41,7 +44,6 @@ struct BondList {
   bool is_broken(const graph::FixedProgram& program, const BondSpace& space, size_t slot) const;
 
  private:
-  std::vector<EntryGroup>& groups_of(Ends ends) { return ends == Ends::both ? both : own; }
   void add_kinds(const graph::BondRows& rows);
 };
 

@@ -2,8 +2,11 @@
 #include "emu/lattice/rounds/finish_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
+
+#include "emu/lattice/kernel_rule.h"
 
 namespace cuboct::emu {
 namespace {
@@ -12,111 +15,116 @@ using graph::Node;
 using graph::Op;
 using graph::Source;
 
+// The drift is exact: what the residue and the drift make together of visible units goes to x. True where
+// something changed; `away` gets the cells that it moved.
+bool move_along(const FinishJob& job, size_t a, uint32_t p, double v, double drift, int8_t& away) {
+  const double exact = job.residue[a][p] + drift, whole = std::floor(exact * job.inverse_guard);
+  const auto left = static_cast<int32_t>(exact - whole * job.guard);
+  const double old_x = job.x[a][p], x = old_x + whole;
+  away = static_cast<int8_t>(std::floor(x * job.inverse_edge) - std::floor(old_x * job.inverse_edge));
+  const bool changed = whole != 0 || left != job.residue[a][p] || v != job.v[a][p];
+  job.x[a][p] = x, job.residue[a][p] = left, job.v[a][p] = v;
+  return changed;
+}
+
+bool displace(const FinishJob& job, size_t a, uint32_t p, double u) {
+  if (job.u[a] == nullptr) return false;
+  const bool changed = job.u[a][p] != u;
+  job.u[a][p] = u;
+  return changed;
+}
+
 }  // namespace
 
-FinishPass::FinishPass(const graph::FixedProgram& program, const graph::Round& round, const KernelRule& rule)
+FinishPass::FinishPass(const graph::FixedProgram& program, const graph::Round& round)
     : program_(program),
       round_(round),
-      rule_(rule),
       nodes_(needed_by(round.finish, finish_outputs(program, round))),
       block_(round.finish, {nodes_}, finish_outputs(program, round)) {
   for (const int n : nodes_)
     if (round.finish.nodes[static_cast<size_t>(n)].op == Op::input) inputs_.push_back(n);
 }
 
-bool FinishPass::run(Particles& particles, const Block& block, const Active& active, uint64_t step,
-                     const Sums& sums, Moves& moves) {
-  bool fits = true;
-  for (uint32_t begin = block.begin; begin < block.end; begin += VectorBlock::kRoom) {
-    const size_t lanes = std::min<size_t>(VectorBlock::kRoom, block.end - begin);
-    fill(particles, block.begin, begin, lanes, step, sums);
-    if (!wake(particles, begin, lanes, active)) continue;
-    fits = block_.run(0, lanes) && fits;
-    for (const graph::Write& write : round_.writes)
-      keep(block_.values(write.node),
-           particles.fields[static_cast<size_t>(program_.place(write.field) + write.component)], begin, lanes,
-           particles, active, true);
-    if (&round_ != &program_.rounds.back()) continue;
-    const graph::Motion& motion = program_.motion;
-    for (size_t a = 0; a < motion.v.size(); ++a) {
-      keep(block_.values(motion.v[a]), moves.v[a], begin, lanes, particles, active, false);
-      keep(block_.values(motion.drift[a]), moves.drift[a], begin, lanes, particles, active, false);
-      if (!motion.u.empty())
-        keep(block_.values(motion.u[a]), moves.u[a], begin, lanes, particles, active, false);
+bool FinishPass::fits(const FinishJob& job) {
+  who_.clear();
+  for (uint32_t n = 0; n < job.count; ++n) {
+    const uint32_t base = job.begin + (job.chosen != nullptr ? job.chosen[n] : job.first + n) * kGroup;
+    for (uint32_t p = base; p < std::min(base + kGroup, job.end); ++p)
+      if (job.awake == nullptr || job.awake[job.cell[p]] != 0) who_.push_back(p);
+  }
+  if (who_.empty()) return true;
+  fill(job);
+  return block_.run(0, who_.size());
+}
+
+void FinishPass::run(const FinishJob& job) const {
+  const graph::Motion& motion = program_.motion;
+  const bool last = &round_ == &program_.rounds.back();
+  for (size_t k = 0; k < who_.size(); ++k) {
+    const uint32_t p = who_[k];
+    bool changed = false;
+    for (const graph::Write& write : round_.writes) {
+      double& to = job.fields[program_.place(write.field) + write.component][p];
+      const double value = block_.values(write.node)[k];
+      changed |= to != value;
+      to = value;
     }
-  }
-  return fits;
-}
-
-// Particles that sleep have no sums: their lanes become those of one that is awake, so that no check fails by
-// them. False where all sleep.
-bool FinishPass::wake(const Particles& particles, uint32_t begin, size_t lanes, const Active& active) {
-  if (active.awake == nullptr) return true;
-  const auto awake = [&](size_t k) { return active.awake[particles.cell[begin + k]] != 0; };
-  size_t first = 0;
-  while (first < lanes && !awake(first)) ++first;
-  if (first == lanes) return false;
-  for (const int n : inputs_) {
-    double* values = block_.values(n);
-    for (size_t k = 0; k < VectorBlock::padded(lanes); ++k)
-      if (k >= lanes || !awake(k)) values[k] = values[first];
-  }
-  return true;
-}
-
-void FinishPass::keep(const double* values, PaddedArray<double>& to, uint32_t begin, size_t lanes,
-                      const Particles& particles, const Active& active, bool field) const {
-  for (size_t k = 0; k < lanes; ++k) {
-    const auto p = begin + static_cast<uint32_t>(k);
-    if (active.awake != nullptr && active.awake[particles.cell[p]] == 0) continue;
-    if (field && active.changed != nullptr && to[p] != values[k]) active.mark(particles.cell[p]);
-    to[p] = values[k];
+    std::array<int8_t, 3> away{};
+    double speed2 = 0;
+    for (size_t a = 0; last && a < motion.v.size(); ++a) {
+      const double v = block_.values(motion.v[a])[k];
+      changed |= move_along(job, a, p, v, block_.values(motion.drift[a])[k], away[a]);
+      changed |= displace(job, a, p, motion.u.empty() ? 0.0 : block_.values(motion.u[a])[k]);
+      speed2 += v * v;
+    }
+    *job.fastest2 = std::max(*job.fastest2, speed2);
+    if (away != std::array<int8_t, 3>{}) job.crossed(job.owner, p, away.data());
+    if (changed && job.changed != nullptr) job.changed(job.owner, p);
   }
 }
 
-void FinishPass::fill(const Particles& particles, uint32_t block_begin, uint32_t begin, size_t lanes,
-                      uint64_t step, const Sums& sums) {
+void FinishPass::fill(const FinishJob& job) {
+  const size_t lanes = who_.size();
   for (const int n : inputs_) {
     const Node& node = round_.finish.nodes[static_cast<size_t>(n)];
     const auto axis = static_cast<size_t>(node.axis), index = static_cast<size_t>(node.index);
     double* out = block_.values(n);
-    const auto copy = [&](const PaddedArray<double>& from) { std::copy_n(from.data() + begin, lanes, out); };
     const auto each = [&](auto value) {
-      for (size_t k = 0; k < lanes; ++k)
-        out[k] = static_cast<double>(value(begin + static_cast<uint32_t>(k)));
+      for (size_t k = 0; k < lanes; ++k) out[k] = static_cast<double>(value(who_[k]));
     };
+    const auto copy = [&](const double* from) { each([from](uint32_t p) { return from[p]; }); };
     switch (node.source) {
       case Source::sum:
-        std::copy_n(sums[static_cast<size_t>(round_.place(node.index)) + axis].data() + (begin - block_begin),
-                    lanes, out);
+        each([&, sum = job.sums[static_cast<size_t>(round_.place(node.index)) + axis]](uint32_t p) {
+          return sum[(p - job.begin) & job.mask] - kMagic;
+        });
         break;
       case Source::own_x:
         each([&](uint32_t p) {
-          const double x = particles.x[axis][p];
-          return (x - std::floor(x * rule_.inverse_cell) * rule_.cell) * rule_.guard +
-                 particles.residue[axis][p];
+          const double x = job.x[axis][p];
+          return (x - std::floor(x * job.inverse_edge) * job.edge) * job.guard + job.residue[axis][p];
         });
         break;
       case Source::own_v:
-        copy(particles.v[axis]);
+        copy(job.v[axis]);
         break;
       case Source::own_u:
-        if (particles.u[0].size() == 0)
+        if (job.u[axis] == nullptr)
           std::fill_n(out, lanes, 0.0);
         else
-          copy(particles.u[axis]);
+          copy(job.u[axis]);
         break;
       case Source::own_field:
-        copy(particles.fields[static_cast<size_t>(program_.place(node.index)) + axis]);
+        copy(job.fields[static_cast<size_t>(program_.place(node.index)) + axis]);
         break;
       case Source::own_constant:
-        each([&](uint32_t p) { return program_.type_constants[index].values[particles.type[p]]; });
+        each([&](uint32_t p) { return program_.type_constants[index].values[job.type[p]]; });
         break;
       case Source::own_id:
-        each([&](uint32_t p) { return particles.id_of(p); });
+        each([&](uint32_t p) { return job.id != nullptr ? job.id[p] : p; });
         break;
       case Source::step:
-        each([&](uint32_t) { return step; });
+        each([&](uint32_t) { return job.step; });
         break;
       default:
         throw std::logic_error(std::string("a finish has no ") + to_string(node.source));

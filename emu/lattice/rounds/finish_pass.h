@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A round's finish over the particles of a block, as lanes.
+// Interprets a round's finish over the particles of a job, as lanes.
 #pragma once
 
 #include <vector>
 
-#include "emu/lattice/kernel.h"
-#include "emu/lattice/rounds/move.h"
-#include "emu/lattice/rounds/pair_pass.h"
+#include "emu/lattice/code/job.h"
 #include "emu/lattice/rounds/vector_block.h"
 #include "model/graph/program.h"
 
@@ -14,26 +12,23 @@ namespace cuboct::emu {
 
 class FinishPass {
  public:
-  // `program` and `round` must outlive it.
-  FinishPass(const graph::FixedProgram& program, const graph::Round& round, const KernelRule& rule);
+  static constexpr uint32_t kMostGroups = VectorBlock::kRoom / kGroup;  // of a job
 
-  // Writes fields, and, of the last round, `moves`, of the awake particles. False where something does not
-  // fit.
-  bool run(Particles& particles, const Block& block, const Active& active, uint64_t step, const Sums& sums,
-           Moves& moves);
+  // `program` and `round` must outlive it.
+  FinishPass(const graph::FixedProgram& program, const graph::Round& round);
+
+  // As a FitsCode, then as a FinishCode of the same job.
+  bool fits(const FinishJob& job);
+  void run(const FinishJob& job) const;
 
  private:
-  void fill(const Particles& particles, uint32_t block_begin, uint32_t begin, size_t lanes, uint64_t step,
-            const Sums& sums);
-  bool wake(const Particles& particles, uint32_t begin, size_t lanes, const Active& active);
-  void keep(const double* values, PaddedArray<double>& to, uint32_t begin, size_t lanes,
-            const Particles& particles, const Active& active, bool field) const;
+  void fill(const FinishJob& job);
 
   const graph::FixedProgram& program_;
   const graph::Round& round_;
-  const KernelRule& rule_;
   std::vector<int> nodes_, inputs_;
   VectorBlock block_;
+  std::vector<uint32_t> who_;  // by lane: indices of those awake
 };
 
 }  // namespace cuboct::emu

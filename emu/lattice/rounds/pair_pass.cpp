@@ -36,13 +36,10 @@ std::vector<int> with(std::vector<int> nodes, int node) {
 
 }  // namespace
 
-PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round, const BondSpace& space,
-                   bool once)
+PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round)
     : program_(program),
       round_(round),
       graph_(round.pair),
-      space_(space),
-      once_(once),
       when_(round.when),
       parts_(round),
       early_inputs_(inputs_of(graph_, parts_.early)),
@@ -51,126 +48,81 @@ PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round
       block_(graph_, {parts_.early, parts_.late}, with(parts_.outputs, when_)),
       own_(VectorBlock::kRoom),
       other_(VectorBlock::kRoom),
+      own_place_(VectorBlock::kRoom),
+      other_place_(VectorBlock::kRoom),
       chosen_(VectorBlock::kRoom),
-      slot_(VectorBlock::kRoom) {
+      slot_(VectorBlock::kRoom),
+      entry_(VectorBlock::kRoom) {
   for (const int n : early_inputs_)
     if (const Node& node = graph_.nodes[static_cast<size_t>(n)]; node.source == Source::apart)
       apart_.emplace_back(static_cast<size_t>(node.axis), block_.values(n));
 }
 
-bool PairPass::run(const Scope& scope, BondList& bonds, Sums& sums) {
-  for (auto& sum : sums) std::fill_n(sum.data(), sum.size(), 0.0);
-  fits_ = true;
-  if (space_.rows == nullptr)
-    meet_pairs(scope, sums);
-  else
-    meet_bonds(scope, bonds, sums);
-  return fits_;
-}
-
-void PairPass::meet_pairs(const Scope& scope, Sums& sums) {
-  BondList none;
-  const auto all = [&](const PairList& list, size_t k, uint32_t group, bool turned) {
-    const uint32_t base = scope.block.begin + group * kGroup;
-    if (scope.active.near != nullptr && !any_flag(scope.active.near, scope.particles, base / kGroup)) return;
-    const PairList::Group& of = list.groups[k];
-    for (uint32_t e = of.begin; e < of.begin + of.near; ++e) {
-      if (count_ + 2 * kGroup > VectorBlock::kRoom)
-        flush(scope, once_ && turned ? Ends::both : Ends::own, none, sums);
+void PairPass::run(const Job& job, Ends ends) {
+  for (uint32_t n = 0; n < job.count; ++n) {
+    const uint32_t g = job.chosen != nullptr ? job.chosen[n] : job.first + n;
+    const uint32_t group = job.group_of != nullptr ? job.group_of[g] : g;
+    if (job.wanted != nullptr && job.wanted[group] == 0) continue;
+    const uint32_t place = (job.group_of != nullptr ? g : group) * kGroup & job.mask;
+    const EntryGroup of = job.groups[g];
+    for (uint32_t e = of.begin; e != of.begin + of.near; ++e) {
+      if (count_ + kGroup > VectorBlock::kRoom) flush(job, ends);
       const size_t from = count_;
-      meet(scope, base, list.entries[e]);
-      if (turned && !once_) turn(from);
+      meet(job, place, job.begin + group * kGroup, job.entries[e], uint64_t{e} * kGroup, ends);
+      if (ends == Ends::other) turn(from);
     }
-  };
-  for (uint32_t k = 0; k < scope.block.groups(); ++k) all(scope.block.inside, k, k, true);
-  flush(scope, once_ ? Ends::both : Ends::own, none, sums);
-  for (const Edge* edge : {&scope.block.beside, &scope.block.ghosts})
-    for (size_t k = 0; k < edge->group.size(); ++k) all(edge->pairs, k, edge->group[k], false);
-  flush(scope, Ends::own, none, sums);
+  }
+  flush(job, ends);
 }
 
 // From its lower particle's end.
-inline void PairPass::meet(const Scope& scope, uint32_t base, const Entry& entry) {
-  const Particles& particles = scope.particles;
-  const auto& shift = particles.shift[entry.shift];
+inline void PairPass::meet(const Job& job, uint32_t place, uint32_t base, const Entry& entry, uint64_t slot,
+                           Ends ends) {
+  const double* const shift = job.shift[entry.shift];
   const auto first = static_cast<uint32_t>(entry.first);
-  if (entry.lanes == 0xff) {
-    for (uint32_t l = 0; l < kGroup; ++l) own_[count_ + l] = base + l, other_[count_ + l] = first + l;
-    for (const auto& [axis, lanes] : apart_) {
-      const double *own = particles.x[axis].data() + base, *other = particles.x[axis].data() + entry.first;
-      for (uint32_t l = 0; l < kGroup; ++l) lanes[count_ + l] = other[l] - own[l] + shift[axis];
-    }
-    count_ += kGroup;
-    return;
-  }
   for (uint32_t l = 0; l < kGroup; ++l) {
     if ((entry.lanes >> l & 1) == 0) continue;
-    own_[count_] = base + l;
-    other_[count_] = first + l;
+    const size_t k = count_;
+    own_[k] = base + l, other_[k] = first + l;
+    own_place_[k] = place + l;
+    other_place_[k] = ends == Ends::own ? 0 : (first + l - job.begin) & job.mask;
+    slot_[k] = slot + l;
+    entry_[k] = &entry;
     for (const auto& [axis, lanes] : apart_)
-      lanes[count_] = particles.x[axis][first + l] - particles.x[axis][base + l] + shift[axis];
-    ++count_;
-  }
-}
-
-// The lanes from there on again, from the other end.
-void PairPass::turn(size_t from) {
-  const size_t end = count_;
-  for (size_t k = from; k < end; ++k, ++count_) {
-    own_[count_] = other_[k];
-    other_[count_] = own_[k];
-    for (const auto& [axis, lanes] : apart_) lanes[count_] = -lanes[k];
-  }
-}
-
-void PairPass::meet_bonds(const Scope& scope, BondList& bonds, Sums& sums) {
-  for (const Ends ends : {Ends::both, Ends::own}) {
-    const std::vector<EntryGroup>& groups = ends == Ends::both ? bonds.both : bonds.own;
-    for (uint32_t k = 0; k < scope.block.groups(); ++k) {
-      const uint32_t base = scope.block.begin + k * kGroup;
-      if (scope.active.near != nullptr && !any_flag(scope.active.near, scope.particles, base / kGroup))
-        continue;
-      for (uint32_t e = groups[k].begin; e < groups[k].begin + groups[k].count; ++e) {
-        if (count_ + kGroup > VectorBlock::kRoom) flush(scope, ends, bonds, sums);
-        const Entry& entry = bonds.entries[e];
-        for (uint32_t l = 0; l < kGroup; ++l)
-          if (entry.lanes >> l & 1) meet_bond(scope, base, entry, l, BondList::slot(e, l), bonds);
-      }
-    }
-    flush(scope, ends, bonds, sums);
+      lanes[k] = job.x[axis][other_[k]] - job.x[axis][own_[k]] + shift[axis];
+    if (!program_.bonded || meet_bond(job, k, entry)) ++count_;
   }
 }
 
 // Where both are within a cell's edge, their cells are neighbours.
-inline void PairPass::meet_bond(const Scope& scope, uint32_t base, const Entry& entry, uint32_t lane,
-                                size_t slot, const BondList& bonds) {
-  const Particles& particles = scope.particles;
-  const uint32_t own = base + lane, other = static_cast<uint32_t>(entry.first) + lane;
-  std::array<double, 3> apart;
+inline bool PairPass::meet_bond(const Job& job, size_t k, const Entry& entry) {
+  double apart[3];
   bool within = true;
   for (size_t a = 0; a < 3; ++a) {
-    apart[a] = particles.x[a][other] - particles.x[a][own] + particles.shift[entry.shift][a];
-    within = within && std::abs(apart[a]) < space_.cell;
+    apart[a] = job.x[a][other_[k]] - job.x[a][own_[k]] + job.shift[entry.shift][a];
+    within = within && std::abs(apart[a]) < job.cell;
   }
-  if (!within && !space_.meets({particles.x[0][own], particles.x[1][own], particles.x[2][own]}, apart)) {
-    fits_ = fits_ && bonds.is_broken(program_, space_, slot);
-    return;
-  }
-  own_[count_] = own;
-  other_[count_] = other;
-  slot_[count_] = slot;
-  for (const auto& [axis, lanes] : apart_) lanes[count_] = apart[axis];
-  ++count_;
+  if (within) return true;
+  if (!job.meet(job.owner, own_[k], other_[k], slot_[k], apart)) return false;
+  for (const auto& [axis, lanes] : apart_) lanes[k] = apart[axis];
+  return true;
 }
 
-void PairPass::write_bonds(const Scope& scope, size_t lanes, BondList& bonds) {
+// The lanes from there on become those from the other end.
+void PairPass::turn(size_t from) {
+  for (size_t k = from; k < count_; ++k) {
+    std::swap(own_[k], other_[k]);
+    std::swap(own_place_[k], other_place_[k]);
+    for (const auto& [axis, lanes] : apart_) lanes[k] = -lanes[k];
+  }
+}
+
+void PairPass::write_bonds(const Job& job, size_t lanes) const {
   for (const graph::Write& write : round_.bond_writes) {
     const double* value = block_.values(write.node);
-    PaddedArray<double>& to =
-        bonds.numbers[static_cast<size_t>(program_.bond_place(write.field) + write.component)];
+    double* const to = job.bonds[program_.bond_place(write.field) + write.component];
     for (size_t k = 0; k < lanes; ++k) {
-      if (scope.active.changed != nullptr && to[slot_[k]] != value[k])
-        for (const uint32_t end : {own_[k], other_[k]}) scope.active.mark(scope.particles.cell[end]);
+      if (job.changed != nullptr && to[slot_[k]] != value[k]) job.changed(job.owner, own_[k], other_[k]);
       to[slot_[k]] = value[k];
     }
   }
@@ -186,18 +138,24 @@ void PairPass::repeat_first(const std::vector<int>& nodes, size_t lanes) {
   }
 }
 
-void PairPass::flush(const Scope& scope, Ends ends, BondList& bonds, Sums& sums) {
+void PairPass::flush(const Job& job, Ends ends) {
   if (count_ == 0) return;
   repeat_first(early_inputs_, count_);
-  fill(scope, early_inputs_, count_, bonds);
-  fits_ = block_.run(0, count_) && fits_;
+  fill(job, early_inputs_, count_);
+  bool fits = block_.run(0, count_);
   if (const size_t lanes = choose(count_); lanes > 0) {
-    fill(scope, late_inputs_, lanes, bonds);
-    fits_ = block_.run(1, lanes) && fits_;
-    add(scope, ends, lanes, sums);
-    write_bonds(scope, lanes, bonds);
+    fill(job, late_inputs_, lanes);
+    fits = block_.run(1, lanes) && fits;
+    if (!fits) tell_misfits(job, lanes);
+    add(job, ends, lanes);
+    write_bonds(job, lanes);
   }
   count_ = 0;
+}
+
+// Some pair of these has a check that failed.
+void PairPass::tell_misfits(const Job& job, size_t lanes) const {
+  for (size_t k = 0; k < lanes; ++k) job.misfit(job.owner, own_[k], other_[k], *entry_[k], slot_[k]);
 }
 
 // The lanes that count move to the front.
@@ -212,16 +170,15 @@ size_t PairPass::choose(size_t lanes) {
   const auto move = [&](auto* values) {
     for (size_t k = 0; k < count; ++k) values[k] = values[chosen_[k]];
   };
-  move(own_.data());
-  move(other_.data());
+  for (auto* index : {&own_, &other_, &own_place_, &other_place_}) move(index->data());
   move(slot_.data());
+  move(entry_.data());
   for (const int n : kept_) move(block_.values(n));
   repeat_first(kept_, count);
   return count;
 }
 
-void PairPass::fill(const Scope& scope, const std::vector<int>& inputs, size_t lanes, const BondList& bonds) {
-  const Particles& particles = scope.particles;
+void PairPass::fill(const Job& job, const std::vector<int>& inputs, size_t lanes) {
   const size_t padded = VectorBlock::padded(lanes);
   const auto types = static_cast<size_t>(program_.types);
   for (const int n : inputs) {
@@ -232,20 +189,19 @@ void PairPass::fill(const Scope& scope, const std::vector<int>& inputs, size_t l
     const auto each = [&](auto value) {
       for (size_t k = 0; k < padded; ++k) out[k] = static_cast<double>(value(k));
     };
-    const auto of = [&](const PaddedArray<double>& values, const uint32_t* whose) {
-      each([from = values.data(), whose](size_t k) { return from[whose[k]]; });
+    const auto of = [&](const double* from, const uint32_t* whose) {
+      each([from, whose](size_t k) { return from[whose[k]]; });
     };
-    const auto field = [&]() -> const PaddedArray<double>& {
-      return particles.fields[static_cast<size_t>(program_.place(node.index)) + axis];
-    };
+    const auto field = [&] { return job.fields[static_cast<size_t>(program_.place(node.index)) + axis]; };
+    const auto id = [&](uint32_t p) { return job.id != nullptr ? job.id[p] : p; };
     switch (node.source) {
       case Source::apart:
         break;  // meet() has it
       case Source::own_v:
-        of(particles.v[axis], own);
+        of(job.v[axis], own);
         break;
       case Source::other_v:
-        of(particles.v[axis], other);
+        of(job.v[axis], other);
         break;
       case Source::own_field:
         of(field(), own);
@@ -254,34 +210,33 @@ void PairPass::fill(const Scope& scope, const std::vector<int>& inputs, size_t l
         of(field(), other);
         break;
       case Source::own_constant:
-        each([&](size_t k) { return program_.type_constants[index].values[particles.type[own[k]]]; });
+        each([&](size_t k) { return program_.type_constants[index].values[job.type[own[k]]]; });
         break;
       case Source::other_constant:
-        each([&](size_t k) { return program_.type_constants[index].values[particles.type[other[k]]]; });
+        each([&](size_t k) { return program_.type_constants[index].values[job.type[other[k]]]; });
         break;
       case Source::pair_constant:
         each([&](size_t k) {
-          return program_.pair_constants[index]
-              .values[particles.type[own[k]] * types + particles.type[other[k]]];
+          return program_.pair_constants[index].values[job.type[own[k]] * types + job.type[other[k]]];
         });
         break;
       case Source::own_id:
-        each([&](size_t k) { return particles.id_of(own[k]); });
+        each([&](size_t k) { return id(own[k]); });
         break;
       case Source::other_id:
-        each([&](size_t k) { return particles.id_of(other[k]); });
+        each([&](size_t k) { return id(other[k]); });
         break;
       case Source::step:
-        each([&](size_t) { return scope.step; });
+        each([&](size_t) { return job.step; });
         break;
       case Source::bond_field: {
         const auto place = static_cast<size_t>(program_.bond_place(node.index)) + axis;
-        each([from = bonds.numbers[place].data(), this](size_t k) { return from[slot_[k]]; });
+        each([from = job.bonds[place], this](size_t k) { return from[slot_[k]]; });
         break;
       }
       case Source::bond_constant: {
         const size_t numbers = program_.bond_constants.size();
-        each([&](size_t k) { return space_.rows->constants[bonds.kind[slot_[k]] * numbers + index]; });
+        each([&](size_t k) { return job.bond_constants[job.kind[slot_[k]] * numbers + index]; });
         break;
       }
       default:
@@ -291,14 +246,13 @@ void PairPass::fill(const Scope& scope, const std::vector<int>& inputs, size_t l
 }
 
 // Whole numbers below 2^51 in any order.
-void PairPass::add(const Scope& scope, Ends ends, size_t lanes, Sums& sums) {
-  const uint32_t begin = scope.block.begin;
+void PairPass::add(const Job& job, Ends ends, size_t lanes) const {
   for (size_t t = 0; t < parts_.terms.size(); ++t) {
     const double* term = block_.values(parts_.terms[t]);
-    double* sum = sums[t].data();
-    for (size_t k = 0; k < lanes; ++k) sum[own_[k] - begin] += term[k];
-    if (ends == Ends::own) continue;
-    for (size_t k = 0; k < lanes; ++k) sum[other_[k] - begin] += parts_.signs[t] * term[k];
+    double* sum = job.sums[t];
+    for (size_t k = 0; k < lanes; ++k) sum[own_place_[k]] += term[k];
+    if (ends != Ends::both) continue;
+    for (size_t k = 0; k < lanes; ++k) sum[other_place_[k]] += parts_.signs[t] * term[k];
   }
 }
 

@@ -5,10 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "emu/lattice/code/code_pass.h"
-#include "emu/lattice/code/finish_code_pass.h"
-#include "emu/lattice/rounds/finish_pass.h"
-#include "emu/lattice/rounds/pair_pass.h"
+#include "emu/lattice/rounds/block_rounds.h"
 
 namespace cuboct::emu {
 
@@ -30,10 +27,7 @@ class Rounds {
 
   // What the rounds keep of bonds, in the order of State::bonds.
   void take_bonds(const std::vector<int64_t>& bonds) { bonds_ = bonds; }
-  std::vector<int64_t> give_bonds() const { return whole(&BondList::numbers); }
-  // Of the step at hand, before it wrote any.
-  void keep_bonds();
-  std::vector<int64_t> bonds_before() const { return whole(&BondList::before); }
+  std::vector<int64_t> give_bonds() const;
 
   // Whether the code was compiled with the program: then nothing is compiled here.
   bool has_kept_code(const std::string& simd) const;
@@ -41,40 +35,27 @@ class Rounds {
   void compile(const std::string& simd, const std::string& directory);
   bool compiled() const { return library_ != nullptr; }
 
-  // For particles stored in these blocks from now on, at places below `room`.
-  void cut(const std::vector<Block>& blocks, size_t room);
-  size_t bond_entries(size_t b) const { return parts_[b].bonds.entries.size(); }
+  // For so many blocks from now on.
+  void cut(size_t blocks);
+  size_t bond_entries(size_t b) const { return blocks_[b].bonds().entries.size(); }
   // Of a bonded program, once.
   void list_bonds(size_t b, const Block& block, const Particles& particles, const Index& index);
 
-  // Of round k, all blocks after one another: the sums of pairs, then the finish. False where something does
-  // not fit.
-  bool meet(size_t k, size_t b, const Scope& scope);
-  bool finish(size_t k, size_t b, Block& block, Particles& particles, const Active& active, uint64_t step);
-  // After the last round: velocities, displacements and places, and who left its cell.
-  void move(size_t b, Block& block, Particles& particles, const Active& active, uint64_t step);
+  // As of BlockRounds.
+  void across(size_t k, size_t b, const RoundStep& step) { blocks_[b].across(code(), k, step); }
+  void inside(size_t k, size_t b, const RoundStep& step) { blocks_[b].inside(code(), k, step); }
 
  private:
-  struct Part {
-    std::vector<std::unique_ptr<PairPass>> pairs;  // by round
-    std::vector<std::unique_ptr<FinishPass>> finishes;
-    std::vector<Sums> sums;
-    WantedGroups wanted;  // of this step, by compiled code
-    BondList bonds;
-    bool lost = false;  // a bond that counts has its partner too far away
-  };
-  std::vector<int64_t> whole(std::vector<PaddedArray<double>> BondList::*numbers) const;
+  RoundCode code() const { return {program_, rule_, space_, once_, bond_constants_, library_.get()}; }
 
   const graph::FixedProgram& program_;
   const KernelRule& rule_;
   bool once_;  // terms are made once for both ends
   BondSpace space_;
-  std::vector<Part> parts_;               // by block
-  Moves moves_;                           // while finishes are interpreted
+  std::vector<double> bond_constants_;  // of the kinds of bonds
+  std::vector<BlockRounds> blocks_;
   std::vector<int64_t> bonds_;            // as they were given
   std::unique_ptr<CodeLibrary> library_;  // null: rounds are interpreted
-  std::vector<CodePass> code_;            // by round
-  std::vector<FinishCodePass> finish_code_;
 };
 
 }  // namespace cuboct::emu
