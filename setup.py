@@ -25,13 +25,16 @@ class CMakeBuild(build_ext):
                  f"-DPython_EXECUTABLE={sys.executable}", *left_out],
                 check=True,
             )  # fmt: skip
-        subprocess.run(["cmake", "--build", BUILD, "--target", "_cuboct"], check=True)
+        subprocess.run(["cmake", "--build", BUILD, "--target", "_cuboct", "kept_rules"], check=True)
         built = next((BUILD / "python/cuboct").glob("_cuboct*.so"))
         place = Path(self.get_ext_fullpath(extension.name))
         self.copy_file(str(built), str(place))
         for part in ("cuboct-mesh.so", "cuboct-read-mesh", "cuboct-read-trace"):  # what the module looks for beside itself
             if (BUILD / part).exists():
                 self.copy_file(str(BUILD / part), str(place.with_name(part)))
+        for code in (BUILD / "rules").glob("*.so"):
+            place.with_name("rules").mkdir(exist_ok=True)
+            self.copy_file(str(code), str(place.with_name("rules") / code.name))
 
 
 OWN.mkdir(parents=True, exist_ok=True)

@@ -21,7 +21,9 @@ void keep_rule(const std::string& directory, const std::string& given) {
   const std::string path = given.substr(0, colon);
   Scene scene = load_scene(path, {colon == std::string::npos ? "" : given.substr(colon + 1), {}});
   const Plan plan = program_plan_of(scene, Arch());
-  keep_code(plan.program->program, is_mutual(plan.program->program), directory);
+  const graph::FixedProgram& program = plan.program->program;
+  if (const std::string failed = keep_code(program, is_mutual(program), directory); !failed.empty())
+    fmt::print(stderr, "{} is not compiled for each machine: {}\n", given, failed);
 }
 
 }  // namespace

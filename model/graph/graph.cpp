@@ -36,7 +36,23 @@ std::vector<Interval> ranges_of(const Graph& graph, const Node& node) {
 // The products of a table: of an entry of 32 bits, or the sum of two, and T bits.
 bool table_is_exact(const FixedTable& table) { return 32 + table.degree - 1 + table.fraction_bits <= 52; }
 
+// Doubles add the products of a dot one after another: each sum on the way is exact too.
+bool partial_sums_are_exact(const Node& node, const std::vector<Interval>& ranges) {
+  const size_t count = node.inputs.size() / 2;
+  for (size_t k = 1; k < count; ++k) {
+    Node first{.op = Op::dot};
+    std::vector<Interval> of_first;
+    for (const size_t half : {size_t{0}, count})
+      for (size_t n = half; n < half + k; ++n)
+        first.inputs.push_back(node.inputs[n]), of_first.push_back(ranges[n]);
+    const WideInterval sum = product_of(first, of_first);
+    if (!below(sum.low, sum.high, 53)) return false;
+  }
+  return true;
+}
+
 bool is_exact(const Graph& graph, const Node& node) {
+  if (node.op == Op::dot && !partial_sums_are_exact(node, ranges_of(graph, node))) return false;
   const WideInterval product = product_of(node, ranges_of(graph, node));
   if (node.op == Op::lookup && !table_is_exact(graph.tables[static_cast<size_t>(node.table)])) return false;
   return below(product.low, product.high, 52) && below(node.range.low, node.range.high, 51);

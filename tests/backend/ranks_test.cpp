@@ -97,13 +97,14 @@ TEST(Ranks, HoldGoldensBitsOfRulesOfText) {
     const Scene scene = read_scene(file, {.stage = stages.empty() ? "" : stages.front().name});
     const Plan plan = program_plan_of(scene, Arch());
     const auto golden = golden_kind(scene, plan).make(nullptr, false);
-    const emu::LatticeChoice choice{
-        .engine = {.threads = 1,
-                   .simd = {},
-                   .ranks = world,
-                   .cut = name == "glass" ? "y" : "bricks",
-                   .rule_code = name == "copper" ? emu::RuleCode::compiled : emu::RuleCode::interpreted,
-                   .code_directory = CUBOCT_RULE_CODE}};
+    const emu::LatticeChoice choice{.engine = {.threads = 1,
+                                               .simd = {},
+                                               .ranks = world,
+                                               .cut = name == "glass" ? "y" : "bricks",
+                                               .rule_code = name == "heat" || name == "plastic"
+                                                                ? emu::RuleCode::interpreted
+                                                                : emu::RuleCode::compiled,
+                                               .code_directory = CUBOCT_RULE_CODE}};
     const auto lattice = emu::lattice_kind(scene, plan, choice).make(nullptr, false);
     std::vector<uint64_t> expected{golden->hash()}, found{lattice->hash()};
     golden->advance(8, &expected);

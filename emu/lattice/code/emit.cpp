@@ -120,11 +120,6 @@ std::string take_bonds(const graph::FixedProgram& program, const graph::Round& r
   return text;
 }
 
-bool has_check(const graph::Graph& graph, const std::vector<int>& nodes) {
-  return std::ranges::any_of(
-      nodes, [&](int n) { return graph.nodes[static_cast<size_t>(n)].op == graph::Op::check; });
-}
-
 // `sum` takes the term of lanes that are near, with `sign` times its own.
 std::string take_term(const GraphText::Term& term, size_t t, const std::string& sum, bool minus) {
   if (term.rounds) return fmt::format("fused(product{}, {}{}, {})", t, minus ? "-" : "", term.factor, sum);
@@ -197,7 +192,8 @@ std::string round_text(const graph::FixedProgram& program, size_t k, Ends ends, 
       "        if (!any(near)) continue;\n",
       pair.truth(round.when));
   text += pair.statements(rest(late), true, "        ");
-  if (has_check(round.pair, late))
+  if (std::ranges::any_of(
+          late, [&](int n) { return round.pair.nodes[static_cast<size_t>(n)].op == graph::Op::check; }))
     text +=
         "        if (__builtin_expect(any(bad), 0)) {\n"
         "          for (int l = 0; l < kLanes; ++l)\n"
@@ -244,7 +240,7 @@ std::string name_of(size_t round, Ends ends) {
 
 Code code_of(const graph::FixedProgram& program, bool once) {
   Code code;
-  CodeConstants constants(code.constants);
+  CodeConstants constants(code.constants, code.seeds);
   code.text =
       "#include \"emu/lattice/code/lanes.h\"\n#include \"emu/lattice/code/motion.h\"\n\n"
       "namespace cuboct::emu {\n\n";

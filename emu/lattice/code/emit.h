@@ -9,10 +9,11 @@
 
 namespace cuboct::emu {
 
+// Tables: of each round those of the pair's graph, then those of the finish.
 struct Code {
   std::string text;
   std::vector<double> constants;  // CodeNumbers::constants
-  // CodeNumbers::tables: of each round the tables of the pair's graph, then those of the finish.
+  std::vector<int64_t> seeds;
 };
 
 // A function that the text defines, a MeetCode: of this round, and these ends.

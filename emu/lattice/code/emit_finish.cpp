@@ -39,35 +39,17 @@ std::string finish_input(const graph::FixedProgram& program, const graph::Round&
   }
 }
 
-// Around `body`, which knows i, the lanes that are awake, and `bad`.
-std::string over_particles(const std::string& head, const std::string& body, const std::string& tail) {
-  return fmt::format(
-      "extern \"C\" {}(const FinishJob& job) {{\n"
-      "  const double* const __restrict K = job.numbers.constants;\n"
-      "  const CodeTable* const __restrict T = job.numbers.tables;\n"
-      "  static_cast<void>(K), static_cast<void>(T);\n"
-      "  W bad = W{{}};\n"
-      "  V fastest2 = V{{}};\n"
-      "  for (uint32_t n = 0; n < job.count; ++n) {{\n"
-      "    const ptrdiff_t group = job.chosen != nullptr ? job.chosen[n] : job.first + n;\n"
-      "    for (ptrdiff_t at = 0; at < kEntryLanes; at += kLanes) {{\n"
-      "      const ptrdiff_t i = job.begin + group * kEntryLanes + at;\n"
-      "      const W awake = awake_lanes(job, i);\n"
-      "      if (!any(awake)) continue;\n"
-      "{}"
-      "    }}\n"
-      "  }}\n"
-      "  static_cast<void>(bad), static_cast<void>(fastest2);\n"
-      "{}"
-      "}}\n\n",
-      head, body, tail);
-}
+// Lanes that do not fit are told, and then none of them is written.
+constexpr const char* kTellMisfits =
+    "      if (__builtin_expect(any(bad), 0)) {\n"
+    "        job.misfit(job.owner, static_cast<uint32_t>(i), kLanes);\n"
+    "        bad = W{};\n"
+    "        continue;\n"
+    "      }\n";
 
-std::vector<int> checks_among(const graph::Graph& graph, const std::vector<int>& nodes) {
-  std::vector<int> checks;
-  for (const int n : nodes)
-    if (graph.nodes[static_cast<size_t>(n)].op == Op::check) checks.push_back(n);
-  return checks;
+bool has_check(const graph::Graph& graph, const std::vector<int>& nodes) {
+  return std::ranges::any_of(nodes,
+                             [&](int n) { return graph.nodes[static_cast<size_t>(n)].op == Op::check; });
 }
 
 std::string keep_all(const graph::FixedProgram& program, const graph::Round& round, const GraphText& finish) {
@@ -92,27 +74,39 @@ std::string move_all(const graph::Motion& motion, const GraphText& finish) {
 }  // namespace
 
 std::string name_of_finish(size_t round) { return fmt::format("cuboct_finish_{}", round); }
-std::string name_of_fits(size_t round) { return fmt::format("cuboct_fits_{}", round); }
 
 std::string finish_text(const graph::FixedProgram& program, size_t k, size_t first_table,
                         CodeConstants& constants) {
   const graph::Round& round = program.rounds[k];
   const bool last = k + 1 == program.rounds.size();
-  Surroundings surroundings{[&](const Node& node) { return finish_input(program, round, node); }, "awake",
-                            first_table, true};
+  const Surroundings surroundings{[&](const Node& node) { return finish_input(program, round, node); },
+                                  "awake", first_table};
   const GraphText finish(round.finish, constants, surroundings);
   const std::vector<int> nodes = needed_by(round.finish, finish_outputs(program, round));
-  std::string body = finish.statements(nodes, false, "      ") + keep_all(program, round, finish);
-  if (last) body += move_all(program.motion, finish);
-  body += "      tell(job, i, moved);\n";
-  const std::string text =
-      over_particles("void " + name_of_finish(k), body, last ? "  tell_fastest(job, fastest2);\n" : "");
-  const std::vector<int> checks = checks_among(round.finish, nodes);
-  if (checks.empty()) return text;
-  surroundings.all_fit = false;
-  return text + over_particles("bool " + name_of_fits(k),
-                               finish.statements(needed_by(round.finish, checks), false, "      "),
-                               "  return !any(bad);\n");
+  std::string text = fmt::format(
+      "extern \"C\" void {}(const FinishJob& job) {{\n"
+      "  const double* const __restrict K = job.numbers.constants;\n"
+      "  const CodeTable* const __restrict T = job.numbers.tables;\n"
+      "  static_cast<void>(K), static_cast<void>(T);\n"
+      "  W bad = W{{}};\n"
+      "  V fastest2 = V{{}};\n"
+      "  for (uint32_t n = 0; n < job.count; ++n) {{\n"
+      "    const ptrdiff_t group = job.chosen != nullptr ? job.chosen[n] : job.first + n;\n"
+      "    for (ptrdiff_t at = 0; at < kEntryLanes; at += kLanes) {{\n"
+      "      const ptrdiff_t i = job.begin + group * kEntryLanes + at;\n"
+      "      const W awake = awake_lanes(job, i);\n"
+      "      if (!any(awake)) continue;\n",
+      name_of_finish(k));
+  text += finish.statements(nodes, false, "      ");
+  text += has_check(round.finish, nodes) ? kTellMisfits : "      static_cast<void>(bad);\n";
+  text += keep_all(program, round, finish);
+  if (last) text += move_all(program.motion, finish);
+  return text +
+         "      tell(job, i, moved);\n"
+         "    }\n"
+         "  }\n"
+         "  tell_fastest(job, fastest2);\n"
+         "}\n\n";
 }
 
 }  // namespace cuboct::emu

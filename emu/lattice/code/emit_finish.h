@@ -9,9 +9,8 @@
 
 namespace cuboct::emu {
 
-// Functions that the text defines: a FinishCode, and where the finish has checks a FitsCode.
+// A function that the text defines, a FinishCode.
 std::string name_of_finish(size_t round);
-std::string name_of_fits(size_t round);
 
 std::string finish_text(const graph::FixedProgram& program, size_t round, size_t first_table,
                         CodeConstants& constants);

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 
@@ -34,11 +32,13 @@ bool is_truth(const Node& node) {
 }  // namespace
 
 std::string CodeConstants::operator()(double value) {
-  const auto same = std::ranges::find_if(
-      values_, [&](double v) { return std::bit_cast<uint64_t>(v) == std::bit_cast<uint64_t>(value); });
-  const auto at = same - values_.begin();
-  if (same == values_.end()) values_.push_back(value);
-  return fmt::format("splat(K[{}])", at);
+  values_.push_back(value);
+  return fmt::format("splat(K[{}])", values_.size() - 1);
+}
+
+std::string CodeConstants::seed(int64_t value) {
+  seeds_.push_back(value);
+  return fmt::format("job.numbers.seeds[{}]", seeds_.size() - 1);
 }
 
 std::string GraphText::statements(const std::vector<int>& nodes, bool late, const std::string& indent) const {
@@ -140,7 +140,6 @@ std::string GraphText::lookup(const Node& node) const {
 std::string GraphText::check(const Node& node) const {
   const Node& when = at(node.inputs[1]);
   const bool always = when.op == Op::constant && when.number != 0;
-  if (always && outside_.all_fit) return value(node.inputs[0]);
   return fmt::format("checked({}, {}, {}{}, bad)", value(node.inputs[0]),
                      constant_(-std::ldexp(1.0, node.width - 1)), outside_.counts,
                      always ? "" : " & " + truth(node.inputs[1]));
@@ -200,7 +199,8 @@ std::string GraphText::value_text(const Node& node, bool late) const {
     case Op::check:
       return check(node);
     case Op::noise:
-      return fmt::format("noise({}, {}, {}, {}, {})", node.number, in(0), in(1), in(2), node.width);
+      return fmt::format("noise({}, {}, {}, {}, {})", constant_.seed(node.number), in(0), in(1), in(2),
+                         node.width);
     default:
       throw std::logic_error("a truth is no number");
   }

@@ -10,14 +10,18 @@
 
 namespace cuboct::emu {
 
-// Numbers that the text reads from an array K. Equal ones stand there once.
+// Numbers that the text reads, one for each use: no two rules differ in their text where they differ in
+// numbers.
 class CodeConstants {
  public:
-  explicit CodeConstants(std::vector<double>& values) : values_(values) {}
-  std::string operator()(double value);  // an expression
+  CodeConstants(std::vector<double>& values, std::vector<int64_t>& seeds) : values_(values), seeds_(seeds) {}
+  // Expressions: a number in all lanes; a seed.
+  std::string operator()(double value);
+  std::string seed(int64_t value);
 
  private:
   std::vector<double>& values_;
+  std::vector<int64_t>& seeds_;
 };
 
 // What stands outside of a graph.
@@ -25,7 +29,6 @@ struct Surroundings {
   std::function<std::string(const graph::Node& input)> input;
   std::string counts;      // a truth: checks of these lanes count
   size_t first_table = 0;  // of the graph's, in T
-  bool all_fit = false;    // whoever counts passed the checks
 };
 
 // Values of node n are `v<n>`, its truths `w<n>`. A finish and a pair never stand in one scope.

@@ -25,6 +25,7 @@ struct CodeTable {
 // What a rule's text says in numbers.
 struct CodeNumbers {
   const double* constants;
+  const int64_t* seeds;
   const CodeTable* tables;
   const double* const* type_constants;  // [constant][type]
   const double* const* pair_constants;  // [constant][own * types + other]
@@ -100,12 +101,12 @@ struct FinishJob {
   void* owner;
   void (*changed)(void* owner, uint32_t particle);  // null: nobody asks
   void (*crossed)(void* owner, uint32_t particle, const int8_t away[3]);
+  // Some of so many particles has a check that failed. None of them is written.
+  void (*misfit)(void* owner, uint32_t first, uint32_t count);
   double* fastest2;  // the largest v.v so far
 };
 
-// Whether all that is awake fits; writes nothing.
-using FitsCode = bool (*)(const FinishJob&);
-// Of particles that fit: writes fields and, in the last round, moves.
+// Writes fields of awake particles and, in the last round, moves them.
 using FinishCode = void (*)(const FinishJob&);
 
 }  // namespace cuboct::emu

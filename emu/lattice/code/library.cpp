@@ -119,12 +119,17 @@ bool is_kept(const graph::FixedProgram& program, bool once, const std::string& s
   return !kept(code_of(program, once).text, simd).empty();
 }
 
-void keep_code(const graph::FixedProgram& program, bool once, const std::string& directory) {
+std::string keep_code(const graph::FixedProgram& program, bool once, const std::string& directory) {
+  std::string failed;
   const std::string text = code_of(program, once).text;
   make_directory(directory);
-  for (const std::string& flags : kept_flags())
-    compile(text, host_compiler() + " " + kFlags + flags, fs::absolute(directory),
-            name_of_code(text, kFlags + flags));
+  for (const std::string& flags : kept_flags()) try {
+      compile(text, host_compiler() + " " + kFlags + flags, fs::absolute(directory),
+              name_of_code(text, kFlags + flags));
+    } catch (const InputError& error) {  // a compiler that does not know them, say
+      failed = error.told();
+    }
+  return failed;
 }
 
 void CodeLibrary::load(const std::string& path, size_t rounds) {
@@ -136,14 +141,14 @@ void CodeLibrary::load(const std::string& path, size_t rounds) {
     for (const Ends ends : {Ends::own, Ends::other, Ends::both})
       meet_.back().push_back(reinterpret_cast<MeetCode>(find(name_of(k, ends))));
     finish_.push_back(reinterpret_cast<FinishCode>(find(name_of_finish(k))));
-    fits_.push_back(reinterpret_cast<FitsCode>(find(name_of_fits(k))));
   }
 }
 
 MeetCode CodeLibrary::meet(size_t round, Ends ends) const { return meet_[round][static_cast<size_t>(ends)]; }
 
 CodeNumbers CodeLibrary::numbers() const {
-  return {code_.constants.data(), tables_.data(), type_pointers_.data(), pair_pointers_.data(), types_};
+  return {code_.constants.data(), code_.seeds.data(),    tables_.data(),
+          type_pointers_.data(),  pair_pointers_.data(), types_};
 }
 
 }  // namespace cuboct::emu

@@ -14,8 +14,9 @@ namespace cuboct::emu {
 inline constexpr const char* kKeptCode = "rules";
 // `simd`: as LatticeOptions. `once`: as code_of.
 bool is_kept(const graph::FixedProgram& program, bool once, const std::string& simd);
-// Compiles it for each width of vectors that a machine of this kind may have. Throws InputError.
-void keep_code(const graph::FixedProgram& program, bool once, const std::string& directory);
+// Compiles it for each width of vectors that a machine of this kind may have. Returns what went wrong with
+// one of them: runs compile it then, or interpret.
+std::string keep_code(const graph::FixedProgram& program, bool once, const std::string& directory);
 
 class CodeLibrary {
  public:
@@ -26,7 +27,6 @@ class CodeLibrary {
 
   MeetCode meet(size_t round, Ends ends) const;  // null: the code has none
   FinishCode finish(size_t round) const { return finish_[round]; }
-  FitsCode fits(size_t round) const { return fits_[round]; }  // null: all fits
   CodeNumbers numbers() const;
 
  private:
@@ -39,7 +39,6 @@ class CodeLibrary {
   std::vector<const double*> type_pointers_, pair_pointers_;
   std::vector<std::vector<MeetCode>> meet_;  // [round][ends]
   std::vector<FinishCode> finish_;           // by round
-  std::vector<FitsCode> fits_;
 };
 
 }  // namespace cuboct::emu

@@ -54,10 +54,14 @@ class RandomNumbers {
     for (size_t a = 0; a < 3; ++a) {
       fill(particles.x[a], [&] { return whole(0, cell + cell / 4); });
       fill(particles.residue[a], [&] { return whole(0, (int64_t{1} << program.guard) - 1); });
-      fill(particles.v[a], [&] { return number(program.velocity); });
-      if (!program.motion.u.empty()) fill(particles.u[a], [&] { return number(program.displacement); });
+      fill(particles.v[a], [&] { return scaled(program.velocity); });
+      if (!program.motion.u.empty()) fill(particles.u[a], [&] { return scaled(program.displacement); });
     }
     fill(particles.type, [&] { return whole(0, program.types - 1); });
+    if (whole(0, 1) == 1) fill(particles.id, [&] { return whole(0, 1'000'000); });
+    for (auto& shift : particles.shift)
+      for (double& along : shift) along = static_cast<double>(whole(-1, 1) * (cell / 8));
+    particles.shift[kNoShift] = {};
     for (const graph::Field& field : program.fields)
       for (int n = 0; n < field.numbers; ++n)
         fill(particles.fields.emplace_back(), [&] { return number(field.range); });
@@ -89,7 +93,8 @@ class RandomPairs {
       groups.push_back({static_cast<uint32_t>(entries.size()), kEntriesOfGroup, kEntriesOfGroup});
       for (uint32_t e = 0; e < kEntriesOfGroup; ++e)
         entries.push_back({static_cast<int32_t>(random_.whole(0, kParticles - kGroup)),
-                           static_cast<uint8_t>(random_.whole(0, 255)), kNoShift});
+                           static_cast<uint8_t>(random_.whole(0, 255)),
+                           static_cast<uint8_t>(random_.whole(0, 1) == 1 ? kNoShift : random_.whole(0, 26))});
     }
   }
   void fill_bonds(const graph::FixedProgram& program, const BondSpace& space, bool once) {
@@ -129,22 +134,28 @@ BondList copy_of(const BondList& bonds) {
   return copy;
 }
 
-Particles copy_of(const Particles& particles) {
+// Of `count` particles from `first` on.
+Particles copy_of(const Particles& particles, uint32_t first, uint32_t count) {
+  const auto some = [&](const auto& from) {
+    auto to = std::decay_t<decltype(from)>(from.size() > 0 ? count : 0);
+    if (from.size() > 0) std::copy_n(from.data() + first, count, to.data());
+    return to;
+  };
   Particles copy;
   for (size_t a = 0; a < 3; ++a) {
-    copy.x[a] = particles.x[a].copy(), copy.v[a] = particles.v[a].copy();
-    copy.u[a] = particles.u[a].copy(), copy.residue[a] = particles.residue[a].copy();
+    copy.x[a] = some(particles.x[a]), copy.v[a] = some(particles.v[a]);
+    copy.u[a] = some(particles.u[a]), copy.residue[a] = some(particles.residue[a]);
   }
-  for (const auto& field : particles.fields) copy.fields.push_back(field.copy());
-  copy.type = particles.type.copy();
-  copy.cell = particles.cell;
+  for (const auto& field : particles.fields) copy.fields.push_back(some(field));
+  copy.type = some(particles.type), copy.id = some(particles.id);
+  copy.shift = particles.shift;
   return copy;
 }
 
 bool same(const Particles& a, const Particles& b) {
   for (size_t k = 0; k < 3; ++k)
     if (!same(a.x[k], b.x[k]) || !same(a.v[k], b.v[k]) || !same(a.u[k], b.u[k]) ||
-        !std::equal(a.residue[k].data(), a.residue[k].data() + kParticles, b.residue[k].data()))
+        !std::equal(a.residue[k].data(), a.residue[k].data() + a.residue[k].size(), b.residue[k].data()))
       return false;
   return same(a.fields, b.fields);
 }
@@ -173,11 +184,14 @@ class PairTrial {
       : code_(code),
         round_(round),
         interpreter_(interpreter),
-        particles_(copy_of(random.particles())),
+        particles_(copy_of(random.particles(), 0, kParticles)),
         bonds_(copy_of(random.bonds())),
         sums_(sums_for(code.program.rounds[round])) {
     block_.begin = 0, block_.end = kParticles, block_.inside = random.list();
-    for (uint32_t g = 0; g < kParticles / kGroup; ++g) all_groups_.push_back(g);
+    for (uint32_t g = 0; g < kParticles / kGroup; ++g) {
+      all_groups_.push_back(g), wanted_.push_back(g % 3 != 0);
+      if (g % 3 != 1) chosen_.push_back(g);
+    }
   }
 
   void run(uint64_t step) {
@@ -194,9 +208,10 @@ class PairTrial {
     const bool bonded = code_.program.bonded;
     job.entries = bonded ? bonds_.entries.data() : block_.inside.entries.data();
     job.groups = bonded ? bonds_.own.data() : block_.inside.groups.data();
-    job.group_of = all_groups_.data();
+    job.group_of = all_groups_.data(), job.wanted = wanted_.data();
     meet(Ends::own, job);
-    job.group_of = nullptr;
+    job.group_of = nullptr, job.wanted = nullptr;
+    if (step % 2 == 1) job.chosen = chosen_.data(), job.count = static_cast<uint32_t>(chosen_.size());
     if (code_.once) {
       if (bonded) job.groups = bonds_.both.data();
       meet(Ends::both, job);
@@ -236,7 +251,8 @@ class PairTrial {
   Block block_;
   BondList bonds_;
   Sums sums_;
-  std::vector<uint32_t> all_groups_;
+  std::vector<uint32_t> all_groups_, chosen_;
+  std::vector<uint8_t> wanted_;
   bool misfits_ = false;
   int lost_ = 0;
 };
@@ -244,39 +260,45 @@ class PairTrial {
 // The finish of one group by one of both ways, and what it tells.
 class FinishTrial {
  public:
-  FinishTrial(const RoundCode& code, size_t round, const Particles& particles, FinishPass* interpreter)
-      : code_(code), round_(round), particles_(copy_of(particles)), interpreter_(interpreter) {
-    block_.begin = 0, block_.end = kParticles;
+  FinishTrial(const RoundCode& code, size_t round, const Particles& particles, uint32_t group,
+              FinishPass* interpreter)
+      : code_(code),
+        round_(round),
+        particles_(copy_of(particles, group * kGroup, kGroup)),
+        interpreter_(interpreter) {
+    block_.begin = 0, block_.end = kGroup;
+    particles_.cell = kCells;
   }
 
-  bool run(Sums& sums, const uint8_t* awake, uint32_t group) {
+  // Lane l is awake where `awake` has a 1 at l; null: all.
+  void run(const std::vector<double*>& sums, const uint8_t* awake, uint64_t number) {
     const Active active{.awake = awake};
-    const RoundStep step{particles_, block_, active, group};
+    const RoundStep step{particles_, block_, active, number};
     const Jobs jobs(step, code_.rule, code_.library->numbers(), none_);
     FinishJob job = jobs.finish();
-    const std::vector<double*> pointers_to_sums = pointers(sums);
-    job.sums = pointers_to_sums.data(), job.mask = kParticles - 1;
-    job.first = group, job.count = 1;
+    job.sums = sums.data(), job.mask = kGroup - 1;
+    job.count = 1;
     job.owner = this;
     job.changed = [](void* owner, uint32_t p) { static_cast<FinishTrial*>(owner)->changed_.push_back(p); };
     job.crossed = [](void* owner, uint32_t p, const int8_t away[3]) {
       static_cast<FinishTrial*>(owner)->crossings_.push_back({p, away[0], away[1], away[2]});
     };
-    fits_ = interpreter_ != nullptr                  ? interpreter_->fits(job)
-            : code_.library->fits(round_) == nullptr ? true
-                                                     : code_.library->fits(round_)(job);
-    if (fits_) interpreter_ != nullptr ? interpreter_->run(job) : code_.library->finish(round_)(job);
-    return fits_;
+    job.misfit = [](void* owner, uint32_t, uint32_t) { static_cast<FinishTrial*>(owner)->fits_ = false; };
+    interpreter_ != nullptr ? interpreter_->run(job) : code_.library->finish(round_)(job);
   }
 
+  bool fits() const { return fits_; }
   // Squares of speeds are no whole numbers that doubles hold.
   bool agrees(const FinishTrial& other) const {
-    return fits_ == other.fits_ && same(particles_, other.particles_) && changed_ == other.changed_ &&
+    if (!fits_ || !other.fits_) return fits_ == other.fits_;
+    return same(particles_, other.particles_) && changed_ == other.changed_ &&
            crossings_ == other.crossings_ &&
            std::abs(block_.fastest2 - other.block_.fastest2) <= 1e-12 * other.block_.fastest2;
   }
 
  private:
+  static constexpr uint32_t kCells[2 * kGroup] = {0, 1, 2, 3, 4, 5, 6, 7};
+
   const RoundCode& code_;
   size_t round_;
   Particles particles_;
@@ -306,39 +328,39 @@ std::vector<graph::Interval> ranges_of_sums(const graph::Round& round) {
   return ranges;
 }
 
-void prove_finish(const RoundCode& code, size_t round) {
+int prove_finish(const RoundCode& code, size_t round) {
   FinishPass pass(code.program, code.program.rounds[round]);
   const std::vector<graph::Interval> ranges = ranges_of_sums(code.program.rounds[round]);
-  std::vector<uint32_t> cells(kParticles + kGroup);
-  std::iota(cells.begin(), cells.end(), 0);
+  int fitted = 0;
   for (uint64_t batch = 0; batch < 4 * kBatches; ++batch) {
     RandomNumbers random(batch + 1000);
-    Particles particles = random.particles(code.program);
-    particles.cell = cells.data();
+    const Particles particles = random.particles(code.program);
     Sums sums;
-    for (const graph::Interval& range : ranges) {
-      auto& sum = sums.emplace_back(kParticles, kMagic);
-      for (uint32_t p = 0; p < kParticles; ++p) sum[p] += random.scaled(range);
-    }
-    // All are awake, most, or one of each group, so that a group fits now and then.
-    std::vector<uint8_t> awake(cells.size() + kGroup);
-    for (uint32_t p = 0; p < kParticles; ++p)
-      awake[p] = batch % 4 == 1 ? p % 3 != 0 : p % kGroup == batch % 8;
+    for (size_t n = 0; n < ranges.size(); ++n) sums.emplace_back(kGroup, kMagic);
+    const std::vector<double*> pointers_to_sums = pointers(sums);
     for (uint32_t group = 0; group < kParticles / kGroup; ++group) {
-      FinishTrial compiled(code, round, particles, nullptr), interpreted(code, round, particles, &pass);
+      for (size_t n = 0; n < ranges.size(); ++n)
+        for (uint32_t l = 0; l < kGroup; ++l) sums[n][l] = kMagic + random.scaled(ranges[n]);
+      // All are awake, most, or one, so that a group fits now and then.
+      uint8_t awake[2 * kGroup] = {};
+      for (uint32_t l = 0; l < kGroup; ++l) awake[l] = batch % 4 == 1 ? l % 3 != 0 : l == group % kGroup;
+      FinishTrial compiled(code, round, particles, group, nullptr);
+      FinishTrial interpreted(code, round, particles, group, &pass);
       for (FinishTrial* trial : {&compiled, &interpreted})
-        trial->run(sums, batch % 4 == 0 ? nullptr : awake.data(), group);
+        trial->run(pointers_to_sums, batch % 4 == 0 ? nullptr : awake, batch);
       if (!compiled.agrees(interpreted))
         distrust("the finish of round '" + code.program.rounds[round].name + "'");
+      fitted += compiled.fits();
     }
   }
+  return fitted;
 }
 
 }  // namespace
 
-void prove(const RoundCode& code, size_t round) {
+int prove(const RoundCode& code, size_t round) {
   prove_pairs(code, round);
-  prove_finish(code, round);
+  return prove_finish(code, round);
 }
 
 }  // namespace cuboct::emu

@@ -6,7 +6,8 @@
 
 namespace cuboct::emu {
 
-WantedGroups::WantedGroups(const Particles& particles, const Block& block, const Active& active) {
+void WantedGroups::find(const Particles& particles, const Block& block, const Active& active) {
+  near.clear(), awake.clear(), is_near.clear();
   if (active.near == nullptr) return;
   is_near.resize(block.groups());
   for (uint32_t k = 0; k < block.groups(); ++k) {
@@ -24,6 +25,7 @@ struct BlockRounds::Owner {
   const RoundStep& step;
   Misfits misfits;
   bool both;  // ends are in this block
+  const FinishJob* finishing = nullptr;
 
   Owner(const RoundCode& of, size_t k, const BondList& list, const RoundStep& now, bool both_ends)
       : code(of),
@@ -65,8 +67,13 @@ struct BlockRounds::Owner {
     job.changed = step.active.changed != nullptr ? bond_changed : nullptr;
     job.misfit = misfit;
   }
+  static void particle_misfit(void* owner, uint32_t first, uint32_t count) {
+    from(owner).misfits.add_finish(*from(owner).finishing, first, count);
+  }
   void give(FinishJob& job) {
+    finishing = &job;
     job.owner = this;
+    job.misfit = particle_misfit;
     job.changed = step.active.changed != nullptr ? changed : nullptr;
     job.crossed = crossed;
   }
@@ -134,21 +141,17 @@ void BlockRounds::meet(const RoundCode& code, size_t k, Ends ends, const Job& jo
   pairs_[k]->run(job, ends);
 }
 
-bool BlockRounds::fits(const RoundCode& code, size_t k, const FinishJob& job) {
-  if (code.library != nullptr) return code.library->fits(k) == nullptr || code.library->fits(k)(job);
+void BlockRounds::finish(const RoundCode& code, size_t k, const FinishJob& job) {
+  if (code.library != nullptr) return code.library->finish(k)(job);
   while (finishes_.size() <= k)
     finishes_.push_back(std::make_unique<FinishPass>(code.program, code.program.rounds[finishes_.size()]));
-  return finishes_[k]->fits(job);
-}
-
-void BlockRounds::finish(const RoundCode& code, size_t k, const FinishJob& job) {
-  code.library != nullptr ? code.library->finish(k)(job) : finishes_[k]->run(job);
+  finishes_[k]->run(job);
 }
 
 void BlockRounds::across(const RoundCode& code, size_t k, const RoundStep& step) {
   const bool some_rest = step.active.near != nullptr;
   if (k == 0) {
-    wanted_ = WantedGroups(step.particles, step.block, step.active);
+    wanted_.find(step.particles, step.block, step.active);
     make_rings(code, step.block);
     find_sides(code, step.block);
   }
@@ -229,10 +232,7 @@ void BlockRounds::inside(const RoundCode& code, size_t k, const RoundStep& step)
     if (!some_rest || !awake_here.empty()) {
       add_sides(ring, begin, end, some_rest);
       choose(finishing, some_rest, awake_here, begin, end);
-      if (fits(code, k, finishing))
-        finish(code, k, finishing);
-      else
-        owner.misfits.add_finish(finishing);
+      finish(code, k, finishing);
     }
     clear(ring, begin, end);
   }

@@ -19,11 +19,10 @@ namespace cuboct::emu {
 
 // Of a block's groups, ascending. Where no cell is at rest all are wanted, and these are empty.
 struct WantedGroups {
-  WantedGroups() = default;
-  WantedGroups(const Particles& particles, const Block& block, const Active& active);
   std::vector<uint32_t> near;    // pairs of some particle may be needed
   std::vector<uint32_t> awake;   // some particle is updated
   std::vector<uint8_t> is_near;  // by group
+  void find(const Particles& particles, const Block& block, const Active& active);
 };
 
 // What runs a program's rounds.
@@ -65,7 +64,6 @@ class BlockRounds {
   void make_rings(const RoundCode& code, const Block& block);
   void meet(const RoundCode& code, size_t k, Ends ends, const Job& job);
   void meet_inside(const RoundCode& code, size_t k, const Block& block, Job& job);
-  bool fits(const RoundCode& code, size_t k, const FinishJob& job);
   void finish(const RoundCode& code, size_t k, const FinishJob& job);
   void add_sides(Sums& ring, uint32_t begin, uint32_t end, bool some_rest);
   void clear(Sums& ring, uint32_t begin, uint32_t end) const;

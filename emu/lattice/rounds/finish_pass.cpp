@@ -45,19 +45,22 @@ FinishPass::FinishPass(const graph::FixedProgram& program, const graph::Round& r
     if (round.finish.nodes[static_cast<size_t>(n)].op == Op::input) inputs_.push_back(n);
 }
 
-bool FinishPass::fits(const FinishJob& job) {
+void FinishPass::run(const FinishJob& job) {
   who_.clear();
   for (uint32_t n = 0; n < job.count; ++n) {
     const uint32_t base = job.begin + (job.chosen != nullptr ? job.chosen[n] : job.first + n) * kGroup;
     for (uint32_t p = base; p < std::min(base + kGroup, job.end); ++p)
       if (job.awake == nullptr || job.awake[job.cell[p]] != 0) who_.push_back(p);
   }
-  if (who_.empty()) return true;
+  if (who_.empty()) return;
   fill(job);
-  return block_.run(0, who_.size());
+  if (block_.run(0, who_.size()))
+    write(job);
+  else
+    for (const uint32_t p : who_) job.misfit(job.owner, p, 1);
 }
 
-void FinishPass::run(const FinishJob& job) const {
+void FinishPass::write(const FinishJob& job) const {
   const graph::Motion& motion = program_.motion;
   const bool last = &round_ == &program_.rounds.back();
   for (size_t k = 0; k < who_.size(); ++k) {

@@ -17,11 +17,11 @@ class FinishPass {
   // `program` and `round` must outlive it.
   FinishPass(const graph::FixedProgram& program, const graph::Round& round);
 
-  // As a FitsCode, then as a FinishCode of the same job.
-  bool fits(const FinishJob& job);
-  void run(const FinishJob& job) const;
+  // As a FinishCode.
+  void run(const FinishJob& job);
 
  private:
+  void write(const FinishJob& job) const;
   void fill(const FinishJob& job);
 
   const graph::FixedProgram& program_;

@@ -64,22 +64,19 @@ void Misfits::add_lost(uint32_t own, uint32_t other, bool both) const {
   if (both) faults.push_back({Fault::bond_lost, other, step_.particles.id_of(own)});
 }
 
-void Misfits::add_finish(const FinishJob& job) const {
+void Misfits::add_finish(const FinishJob& job, uint32_t first, uint32_t count) const {
   FinishRun run(program_, round_, step_.step);
   std::vector<int64_t> sums(static_cast<size_t>(round_.numbers()));
-  for (uint32_t n = 0; n < job.count; ++n) {
-    const uint32_t base = job.begin + (job.chosen != nullptr ? job.chosen[n] : job.first + n) * kGroup;
-    for (uint32_t p = base; p < std::min(base + kGroup, job.end); ++p) {
-      if (job.awake != nullptr && job.awake[job.cell[p]] == 0) continue;
-      for (size_t t = 0; t < sums.size(); ++t)
-        sums[t] = static_cast<int64_t>(job.sums[t][(p - job.begin) & job.mask] - kMagic);
-      const Particle one = particle(p);
-      const std::vector<int64_t> values = fields(p);
-      const Seen seen{&one, {}, values.data()};
-      run.run(std::span(&seen, 1), sums);
-      for (const graph::LaneFault& f : run.faults())
-        step_.block.update_faults.push_back({f.fault, p, f.number});
-    }
+  for (uint32_t p = first; p < std::min(first + count, job.end); ++p) {
+    if (job.awake != nullptr && job.awake[job.cell[p]] == 0) continue;
+    for (size_t t = 0; t < sums.size(); ++t)
+      sums[t] = static_cast<int64_t>(job.sums[t][(p - job.begin) & job.mask] - kMagic);
+    const Particle one = particle(p);
+    const std::vector<int64_t> values = fields(p);
+    const Seen seen{&one, {}, values.data()};
+    run.run(std::span(&seen, 1), sums);
+    for (const graph::LaneFault& f : run.faults())
+      step_.block.update_faults.push_back({f.fault, p, f.number});
   }
 }
 

@@ -20,8 +20,8 @@ class Misfits {
   void add_pair(uint32_t own, uint32_t other, const Entry& entry, uint64_t slot, bool both) const;
   // A bond that counts is not met.
   void add_lost(uint32_t own, uint32_t other, bool both) const;
-  // Adds to the block's update faults those of the awake particles of the job's groups.
-  void add_finish(const FinishJob& job) const;
+  // Adds to the block's update faults those of the awake ones among so many particles of the job.
+  void add_finish(const FinishJob& job, uint32_t first, uint32_t count) const;
 
  private:
   Particle particle(uint32_t p) const;
