@@ -110,8 +110,8 @@ std::vector<int> needed_by(const Graph& graph, const std::vector<int>& nodes);
 // Values are at most 63 bits wide. What is rounded may take 64, together with the half that is added to it.
 inline constexpr Interval kWidest{-(int64_t{1} << 62), (int64_t{1} << 62) - 1};
 
-// Whether doubles hold all that happens in a graph: products below 2^52, values below 2^51, sums of products on
-// their way below 2^53.
+// Whether doubles hold all that happens in a graph: products below 2^52, values below 2^51, sums of products
+// on their way below 2^53.
 struct Exactness {
   bool doubles = true;  // class A; else B, 64-bit integers alone
   int worst = -1;       // of class B the first node that doubles do not hold

@@ -168,5 +168,18 @@ TEST(Exactness, IsThatOfProductsAndValues) {
   EXPECT_EQ(exactness_of(b.graph()).worst, 3);
 }
 
+// Two products that cancel: their sum is small, but a double on the way does not hold the first.
+TEST(Intervals, TellWhetherSumsOfProductsAreExactOnTheirWay) {
+  constexpr int64_t kWide = int64_t{1} << 28;
+  for (const int64_t wide : {kWide, kWide / 16}) {
+    Builder b;
+    const auto near = [&](int index, int64_t at) {
+      return b.input(Source::own_field, index, 0, {at - 1, at + 1});
+    };
+    b.dot({near(0, wide), near(1, -wide)}, {near(2, wide), near(3, wide)}, 1);
+    EXPECT_EQ(exactness_of(b.graph()).doubles, wide < kWide);
+  }
+}
+
 }  // namespace
 }  // namespace cuboct::graph
