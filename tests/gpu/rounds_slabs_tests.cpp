@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Rules of text on several devices that do their work in any order that events allow: golden's bits, however
+// many slabs a scene has, and whatever crosses their borders.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "emu/gpu/device/device.h"
+#include "emu/gpu/rounds/rounds_halo.h"
+#include "hw/engine/engine_kind.h"
+#include "tests/gpu/beside_golden.h"
+#include "tests/gpu/host_compiler.h"
+#include "tests/gpu/rounds_beside_golden.h"
+#include "tests/gpu/torn_glass.h"
+#include "tests/support/refused_with.h"
+
+namespace cuboct::test {
+namespace {
+
+const std::string kSlabRules = CUBOCT_SOURCE_DIR "/scenes/rules/";
+
+gpu::Options of_slabs(int slabs) {
+  gpu::Options options;
+  options.devices.clear();
+  for (int s = 0; s < slabs; ++s) options.devices.push_back(s);
+  return options;
+}
+
+// Planes of cells along the longest axis.
+int planes_of(const Plan& plan) {
+  int longest = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    int low = plan.lattice.cell(0)[a], high = low;
+    for (uint32_t n = 0; n < plan.lattice.size(); ++n) {
+      low = std::min(low, plan.lattice.cell(n)[a]);
+      high = std::max(high, plan.lattice.cell(n)[a]);
+    }
+    const int period = plan.lattice.period()[a];
+    longest = std::max(longest, period > 0 ? period : high - low + 1);
+  }
+  return longest;
+}
+
+class RoundsSlabs : public testing::Test {
+ protected:
+  RoundsSlabs() { gpu::Shuffle::all().on = true; }
+  ~RoundsSlabs() override { gpu::Shuffle::all().on = false; }
+};
+
+TEST_F(RoundsSlabs, RandomCasesHaveGoldensBits) {
+  Compared compared;
+  auto& shuffle = gpu::Shuffle::all();
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    Case c;
+    try {
+      c = seed % 3 == 0 ? random_case(seed) : random_bar(seed);
+    } catch (const InputError&) {
+      continue;
+    }
+    for (int slabs = 2; slabs <= std::min(planes_of(c.setup.plan), seed % 4 == 0 ? 5 : 3); ++slabs) {
+      shuffle.random.seed(seed);
+      compare_rounds(c, seed, compared, of_slabs(slabs));
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(compared.runs, 60u);
+  EXPECT_GT(compared.updates, 100000u);
+  EXPECT_GT(compared.crossed, 1000u);
+  EXPECT_GT(compared.ghosts, 1000u);
+  EXPECT_GT(compared.builds, 2 * compared.runs);
+  EXPECT_GT(compared.faults, 5u);
+  EXPECT_LT(compared.golden_steps, compared.updates / 100);
+  EXPECT_GT(shuffle.overtaken, 1000u);
+}
+
+TEST_F(RoundsSlabs, FaultsAriseAsInGolden) {
+  Compared compared;
+  for (const Fault fault : all_faults()) {
+    const Case c = fault_case(fault);
+    compare_rounds(c, 3, compared, of_slabs(std::min(planes_of(c.setup.plan), 3)));
+  }
+  EXPECT_EQ(compared.faults, all_faults().size());
+}
+
+// Of several stages the first.
+Scene slab_scene(const std::string& name) {
+  if (name == "torn") return torn_glass(kSlabRules);
+  const std::string file = kSlabRules + name + ".toml";
+  const std::vector<StageName> stages = stages_of(file);
+  return read_scene(file, {.stage = stages.empty() ? "" : stages.front().name});
+}
+
+void compare_rule(const std::string& name, uint64_t steps, int slabs, const gpu::CompileRounds& compile) {
+  SCOPED_TRACE(fmt::format("{}, {} slabs", name, slabs));
+  const Scene scene = slab_scene(name);
+  const Plan plan = program_plan_of(scene, Arch());
+  const auto golden = integer_run(scene, plan, nullptr);
+  const auto engine_of = [&](int slabs) {
+    return [&plan, &compile, slabs](const State& state) {
+      return gpu::make_rounds_engine(plan, state, of_slabs(slabs), compile);
+    };
+  };
+  auto device = integer_run(scene, plan, nullptr, engine_of(slabs));
+  std::vector<uint64_t> expected{golden->hash()}, found{device->hash()};
+  golden->advance(steps, &expected), device->advance(steps, &found);
+  // What so many devices leave others go on from, and what those leave.
+  for (const int others : {1, slabs}) {
+    const auto state = std::get<State>(device->frame(false));
+    device = integer_run(scene, plan, state, engine_of(others));
+    golden->advance(3, &expected), device->advance(3, &found);
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(device->damage(), golden->damage());
+  const Counters counters = device->counters();
+  EXPECT_TRUE(std::ranges::count(counters, std::pair<std::string, double>("golden_steps", 0)));
+  EXPECT_FALSE(std::ranges::count(counters, std::pair<std::string, double>("halo_particles", 0)));
+  EXPECT_EQ(note(device->notes(), "kernels"), compile ? "compiled for host" : "interpreted");
+}
+
+TEST_F(RoundsSlabs, RulesOfTextHaveGoldensBits) {
+  compare_rule("heat", 60, 2, {});
+  compare_rule("heat", 20, 3, host_compiler("slabs"));
+  compare_rule("copper", 6, 2, {});
+  compare_rule("torn", 80, 3, {});
+  compare_rule("plastic", 20, 2, {});
+  compare_rule("langevin", 12, 3, {});
+  compare_rule("dpd", 20, 2, {});
+}
+
+}  // namespace
+}  // namespace cuboct::test
