@@ -413,8 +413,6 @@ class RoundsEngine final : public IntegerEngine {
     if (moves) migrate();
     for (auto& slab : slabs_) {
       slab->bin_count.zero(slab->stream), slab->occupancy.zero(slab->stream);
-      for (size_t a = 0; a < 3; ++a) slab->cells.home[a] = slab->home[a].data();
-      slab->cells.entered = slab->entered.data();
     }
     if (!alone()) wait_for_all();  // a slab may count in another one's cells
     for (size_t s = 0; s < slabs_.size(); ++s) {
@@ -510,6 +508,8 @@ class RoundsEngine final : public IntegerEngine {
                                                     1) *
                                                    bins_.length[a]);
       list.listed = slab->listed_at.data();
+      for (size_t a = 0; a < 3; ++a) slab->cells.home[a] = slab->home[a].data();
+      slab->cells.entered = slab->entered.data();
       list.allowed2 = allowed2;
     }
     near_stale_ = true;
