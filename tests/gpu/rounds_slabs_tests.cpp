@@ -69,6 +69,28 @@ TEST_F(RoundsSlabs, FaultsAriseAsInGolden) {
   EXPECT_EQ(compared.faults, all_faults().size());
 }
 
+TEST_F(RoundsSlabs, CellsThatAreNoCubesHaveGoldensBits) {
+  Compared compared;
+  for (uint64_t seed = 1; seed <= 2; ++seed) compare_rounds(uneven_case(seed), seed, compared, of_slabs(2));
+  EXPECT_GT(compared.updates, 10000u);
+}
+
+// Each slab's memory is of its own device.
+TEST(RoundsMemory, IsOfTheDevicesThatAreNamed) {
+  Case c = random_case(1);
+  auto program = std::make_shared<IntegerProgram>();
+  program->program = pair_program(c.setup.plan.rule, c.setup.plan.arch.capacity);
+  c.setup.plan.program = program;
+  auto& allocations = gpu::host_allocations;
+  allocations.clear();
+  gpu::Options options;
+  options.devices = {1, 2};
+  gpu::make_rounds_engine(c.setup.plan, c.setup.initial, options)->advance(2, nullptr);
+  EXPECT_EQ(allocations.count(0), 0u);
+  EXPECT_GT(allocations[1], 20u);
+  EXPECT_GT(allocations[2], 20u);
+}
+
 // Of several stages the first.
 Scene slab_scene(const std::string& name) {
   if (name == "torn") return torn_glass(kSlabRules);

@@ -362,6 +362,12 @@ class RoundsDomain {
         sending.at = static_cast<uint32_t>(all[sending.to]);
         all[sending.to] += sending.count;
       }
+    for (auto& slab : slabs) {
+      slab->beside.clear();
+      for (auto& other : slabs)
+        if (other != slab && (sends(*slab, *other) || sends(*other, *slab)))
+          slab->beside.push_back(other.get());
+    }
     // What is written there is written after this.
     wait_for_all();
     for (size_t s = 0; s < slabs.size(); ++s) {
@@ -379,6 +385,11 @@ class RoundsDomain {
                         guard_, coarse_shift_, numbers_});
       }
     wait_for_all();
+  }
+
+  bool sends(const RoundsSlab& from, const RoundsSlab& to) const {
+    return std::any_of(from.sendings.begin(), from.sendings.end(),
+                       [&](const RoundsSlab::Sending& sending) { return slabs[sending.to].get() == &to; });
   }
 
   // Particles go to the slabs that own their cells. They stand behind those that were there.

@@ -211,12 +211,16 @@ class RoundsEngine final : public IntegerEngine {
     for (size_t k = 0; k < rounds; ++k) {
       const Made made = made_by(program_.rounds[k]);
       const bool last = k + 1 == rounds;
-      // A slab begins when all others are done with the round before. So what they send is there; none still
-      // reads the ghosts that this one goes on to write; and a step that one of them found impossible is
-      // known before the next one writes over the state that it began with.
-      for (auto& slab : domain_.slabs)
-        for (const auto& other : domain_.slabs)
-          if (other != slab) slab->stream.wait(other->done);
+      // A round begins when the slabs beside are done with the one before: what they send is there, and none
+      // still reads the ghosts that this one goes on to write. A step begins when all slabs are: one that
+      // some slab found impossible is known before the next writes over the state that it began with.
+      for (auto& slab : domain_.slabs) {
+        if (k > 0)
+          for (const RoundsSlab* other : slab->beside) slab->stream.wait(other->done);
+        else
+          for (const auto& other : domain_.slabs)
+            if (other != slab) slab->stream.wait(other->done);
+      }
       for (auto& slab : domain_.slabs) {
         slab->launch(frame(*slab, made, k, number), k, block_);
         push(*slab, made, last, number);

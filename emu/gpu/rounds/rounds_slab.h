@@ -267,6 +267,7 @@ class RoundsSlab {
   Array<uint64_t> hashes;
   Array<TableEntry> table_entries;
   std::vector<Sending> sendings;
+  std::vector<RoundsSlab*> beside;  // those that it sends to, or gets something from
   uint32_t width = 0, longest = 0;
 
  private:
