@@ -61,7 +61,8 @@ class Owners {
 };
 
 // In batches of any length: hashes of all steps, the state after each batch, and the fault that ends the run.
-inline void compare_rounds(Case c, uint64_t seed, Compared& compared, const gpu::Options& options = {}) {
+inline void compare_rounds(Case c, uint64_t seed, Compared& compared, const gpu::Options& options = {},
+                           int longest = 9) {
   SCOPED_TRACE(fmt::format("{}, {} slabs, seed {}", c.name, options.devices.size(), seed));
   Plan& plan = c.setup.plan;
   auto made = std::make_shared<IntegerProgram>();
@@ -73,7 +74,7 @@ inline void compare_rounds(Case c, uint64_t seed, Compared& compared, const gpu:
   const auto engine = gpu::make_rounds_engine(plan, c.setup.initial, options);
   Dice dice(seed);
   for (uint64_t step = 0; step < c.steps;) {
-    const uint64_t batch = std::min<uint64_t>(c.steps - step, static_cast<uint64_t>(dice.draw(1, 9)));
+    const uint64_t batch = std::min<uint64_t>(c.steps - step, static_cast<uint64_t>(dice.draw(1, longest)));
     std::vector<uint64_t> expected, found;
     std::string golden_stop, engine_stop;
     const auto text = [](const RunError& e) {
