@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A rule that is text on one or more GPUs of one host: its program of integers runs as it stands, a thread for
-// each particle, with golden's bits after every step. A step that may not be possible is golden's own, on the
-// host, so that errors are too.
+// A rule that is text on one or more GPUs of one host: its program of integers runs as it stands, a thread
+// for each particle, with golden's bits after every step. A step that may not be possible is golden's own, on
+// the host, so that errors are too.
 #pragma once
 
 #include <functional>
