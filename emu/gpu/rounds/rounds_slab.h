@@ -169,7 +169,7 @@ class RoundsSlab {
     }
   }
 
-  // Those of the own particles that `choice` sends to each slab; `count`: of them, filled in. Waits.
+  // How many of the own particles `choice` sends to each slab; then which: list_sent() waits for the counts.
   template <class Choice>
   void count_sent(const Choice& choice, int block) {
     sent_count.zero(stream);
@@ -194,7 +194,7 @@ class RoundsSlab {
     return sendings.empty() ? 0 : sendings.back().first + sendings.back().count;
   }
 
-  // The order of bins is that of memory from now on; `others` of the copies hold it.
+  // Into the order of bins, in the other copies. `before`: particles that stand here, those that leave too.
   void sort(const RoundsPlaces& places, uint32_t before, uint32_t bins, int guard, int frac, int coarse_shift,
             int block) {
     put_in_bins(before, bins, block);
@@ -221,7 +221,7 @@ class RoundsSlab {
              RoundsOrder{bin.data(), bin_first.data(), bin_taken.data(), order.data()});
   }
 
-  // A list of `width_` rows; list_fits() says whether it holds all partners, and makes room where not.
+  // A list of `width` rows. list_fits() says whether it holds all partners; if not, the next one is wider.
   void start_list(RoundsMakeList make, int block) {
     if (entries.size() < size_t{width} * own) entries.resize(size_t{width} * own);
     make.entries = entries.data(), make.counts = counts.data(), make.width = width, make.stride = own;
