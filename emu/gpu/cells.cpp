@@ -49,8 +49,9 @@ void rank_planes(const Geometry& geometry, int axis, int first, int count, SlabC
   for (const Place& place : places) slab.rank[place.at] = slab.ranks++;
 }
 
-// Ends of `slabs` ranges of planes with about equal numbers of particles, each of `least` planes or more.
-std::vector<int> shares(const std::vector<uint64_t>& per_plane, int slabs, int least) {
+}  // namespace
+
+std::vector<int> slab_ends(const std::vector<uint64_t>& per_plane, int slabs, int least) {
   const int planes = static_cast<int>(per_plane.size());
   const uint64_t all = std::accumulate(per_plane.begin(), per_plane.end(), uint64_t{0});
   std::vector<int> ends;
@@ -66,8 +67,6 @@ std::vector<int> shares(const std::vector<uint64_t>& per_plane, int slabs, int l
   }
   return ends;
 }
-
-}  // namespace
 
 int Cells::plane(const Cell& cell) const {
   const int p = cell[axis] - geometry.low[axis];
@@ -95,7 +94,7 @@ Cells make_cells(const Geometry& geometry, const std::array<std::vector<uint64_t
         "use fewer devices");
   const bool ring = geometry.wraps[cells.axis] || geometry.folds;
   const std::vector<int> ends =
-      slabs > 1 ? shares(per_plane[cells.axis], slabs, least) : std::vector<int>{total};
+      slabs > 1 ? slab_ends(per_plane[cells.axis], slabs, least) : std::vector<int>{total};
   for (int s = 0; s < slabs; ++s) {
     SlabCells slab;
     slab.first = s == 0 ? 0 : ends[s - 1];

@@ -54,6 +54,9 @@ struct Cells {
   int plane(const Cell& cell) const;
 };
 
+// Ends of `slabs` ranges of planes with about equal numbers of particles, each of `least` planes or more.
+std::vector<int> slab_ends(const std::vector<uint64_t>& per_plane, int slabs, int least);
+
 // `per_plane[a]`: particles by plane of cells across axis a; slabs get equal shares of them. InputError where
 // there are fewer planes than the slabs need.
 Cells make_cells(const Geometry& geometry, const std::array<std::vector<uint64_t>, 3>& per_plane, int slabs);

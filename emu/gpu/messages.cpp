@@ -30,6 +30,13 @@ void throw_too_dense(uint64_t others) {
       fmt::format("a particle has {} others inside the cutoff and the skin: matter has collapsed", others));
 }
 
+void throw_few_planes(int slabs, int planes) {
+  throw InputError(
+      fmt::format("{} slabs of a plane of cells or more: the scene has {} along its longest axis", slabs,
+                  planes),
+      "use fewer devices");
+}
+
 void throw_far_particle(size_t particle) {
   throw InputError(fmt::format("particle {} is more than 1e9 cells away from the first", particle))
       .about({"particle", "packing"});

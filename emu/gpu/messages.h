@@ -13,6 +13,8 @@ namespace cuboct::gpu {
 
 // InputError.
 [[noreturn]] void throw_too_many(uint64_t particles, uint64_t most);
+// InputError: of a scene with so many planes of cells along its longest axis.
+[[noreturn]] void throw_few_planes(int slabs, int planes);
 [[noreturn]] void throw_far_particle(size_t particle);
 // std::runtime_error: a particle with so many others around.
 [[noreturn]] void throw_too_dense(uint64_t others);

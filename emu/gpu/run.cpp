@@ -326,9 +326,6 @@ EngineKind gpu_kind(const Scene& scene, const Plan& plan, const GpuChoice& choic
   kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool) -> std::unique_ptr<cuboct::Engine> {
     const bool program = choice.arithmetic == Arithmetic::fixed && !plan.rule.cubic();
     if (program && from && !from->head().engine.own.empty()) refuse_another(*from);
-    if (program && choice.engine.devices.size() > 1)
-      throw InputError("a pair law in cells that are no cubes runs on one GPU", "--gpus 1")
-          .about({"box.size", "box.cells", "box"});
     if (program) return std::make_unique<PairProgramRun>(scene, plan, choice, from);
     return std::make_unique<Runner>(scene, plan, choice, from);
   };

@@ -455,6 +455,55 @@ TEST_F(GpuProgram, RunsARuleOfTextInRealNumbers) {
                  scene + ":4:1: a rule of text runs on one GPU\n   4 | [rule]\n     | ^\n  hint: --gpus 1\n");
 }
 
+TEST_F(GpuProgram, OfARuleOfTextHasGoldensBitsOnSeveralDevices) {
+  Answer answer = bench_.cuboct(
+      {"crosscheck", "scenes/rules/heat.toml", "--steps", "20", "--engines", "golden,gpu", "--gpus", "3"});
+  EXPECT_EQ(answer.out, "matched 25600 updates over 20 steps in 2 engines\n") << answer.err;
+  // The watch and the probes read the whole.
+  const auto glass = [&](const std::string& name, std::vector<std::string> more) {
+    more.insert(more.begin(), {"scenes/rules/glass.toml", "--steps", "20", "--quiet", "--anyway"});
+    return run(name, more);
+  };
+  const Trace two = glass("two", {"--engine", "gpu", "--devices", "0,0"});
+  const Trace golden = glass("golden", {"--engine", "golden"});
+  EXPECT_EQ(two.state_hash.back(), golden.state_hash.back());
+  EXPECT_EQ(two.frames, golden.frames);
+  EXPECT_EQ(two.watched, golden.watched);
+  expect_curves(two, golden, 1e-11);
+  expect_refusal({"run", "scenes/rules/dpd.toml", "--engine", "gpu", "--gpus", "8"},
+                 "8 slabs of a plane of cells or more: the scene has 5 along its longest axis\n"
+                 "  hint: use fewer devices\n");
+}
+
+// What a run on two devices left goes on on one, and then on three.
+TEST_F(GpuProgram, OfARuleOfTextGoesOnOnOtherDevices) {
+  const std::string out = bench_.path("parts");
+  const auto arguments = [](uint64_t steps) {
+    return std::vector<std::string>{"scenes/rules/dpd.toml", "--engine",      "gpu", "--quiet", "--steps",
+                                    std::to_string(steps),   "--frame-every", "30",  "--anyway"};
+  };
+  const auto part = [&](uint64_t steps, const char* gpus, const test::Condition& interrupts) {
+    std::vector<std::string> words = arguments(steps);
+    words.insert(words.begin(), "run");
+    words.insert(words.end(), {"--gpus", gpus, "--out", out, "--checkpoint-every", "1 h"});
+    if (std::filesystem::exists(out)) words.emplace_back("--resume");
+    return bench_.cuboct(words, interrupts);
+  };
+  uint64_t steps = 0;
+  for (const char* gpus : {"2", "1"}) {
+    const Answer cut =
+        part(10'000'000, gpus, test::there(fmt::format("{}/frames_{:06}.vtp", out, steps / 30 + 2)));
+    ASSERT_EQ(cut.code, 1) << cut.err;
+    steps = read_trace(out + "/trace.h5").steps();
+  }
+  steps += 40;
+  const Answer answer = part(steps, "3", {});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Trace parts = read_trace(out + "/trace.h5"), whole = run("whole", arguments(steps));
+  EXPECT_EQ(whole.state_hash, parts.state_hash);
+  EXPECT_EQ(whole.frames, parts.frames);
+}
+
 TEST_F(GpuProgram, OfARuleOfTextIsWithinBoundsOfTheReference) {
   const std::string scene = bench_.path("morse.toml");
   std::ofstream(scene) << kMorse;

@@ -6,75 +6,14 @@
 
 #include "emu/gpu/rounds/rounds_engine.h"
 #include "hw/engine/engine_kind.h"
-#include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
-#include "model/trace/compare.h"
 #include "tests/gpu/host_compiler.h"
+#include "tests/gpu/rounds_beside_golden.h"
 #include "tests/gpu/torn_glass.h"
 #include "tests/support/cases.h"
-#include "tests/support/dice.h"
 
 namespace cuboct::test {
 namespace {
-
-struct Compared {
-  uint64_t updates = 0, faults = 0, golden_steps = 0, builds = 0;
-};
-
-double counter(const IntegerEngine& engine, const std::string& name) {
-  for (const auto& [key, value] : engine.counters())
-    if (key == name) return value;
-  return -1;
-}
-
-// In batches of any length: hashes of all steps, the state after each batch, and the fault that ends the run.
-void compare_rounds(Case c, uint64_t seed, Compared& compared) {
-  SCOPED_TRACE(c.name);
-  Plan& plan = c.setup.plan;
-  auto made = std::make_shared<IntegerProgram>();
-  FixedRule rule = plan.rule;
-  rule.axes = 3;
-  made->program = pair_program(rule, plan.arch.capacity);
-  plan.program = made;
-  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
-  const auto engine = gpu::make_rounds_engine(plan, c.setup.initial, {});
-  Dice dice(seed);
-  for (uint64_t step = 0; step < c.steps;) {
-    const uint64_t batch = std::min<uint64_t>(c.steps - step, static_cast<uint64_t>(dice.draw(1, 9)));
-    std::vector<uint64_t> expected, found;
-    std::string golden_stop, engine_stop;
-    const auto text = [](const RunError& e) {
-      return std::to_string(static_cast<int>(e.fault)) + " step " + std::to_string(e.step) + ": " + e.what();
-    };
-    try {
-      for (uint64_t k = 0; k < batch; ++k) {
-        golden.step();
-        expected.push_back(hash_of(plan.lattice, golden.state()));
-      }
-    } catch (const RunError& e) {
-      golden_stop = text(e);
-    }
-    try {
-      engine->advance(batch, &found);
-    } catch (const RunError& e) {
-      engine_stop = text(e);
-    }
-    ASSERT_EQ(found, expected) << "from step " << step;
-    ASSERT_EQ(engine_stop, golden_stop);
-    compared.updates += expected.size() * plan.particles;
-    if (!golden_stop.empty()) {
-      ++compared.faults;
-      break;
-    }
-    step += batch;
-    const State here = engine->state(), there = golden.state();
-    const auto mismatch = compare(there, here);
-    ASSERT_FALSE(mismatch) << mismatch->text("golden", "gpu", plan.lattice);
-    ASSERT_EQ(engine->hash(), hash_of(plan.lattice, there));
-  }
-  compared.golden_steps += static_cast<uint64_t>(counter(*engine, "golden_steps"));
-  compared.builds += static_cast<uint64_t>(counter(*engine, "list_builds"));
-}
 
 TEST(GpuRounds, EveryCaseHasGoldensBits) {
   Compared compared;

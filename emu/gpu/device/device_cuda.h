@@ -126,6 +126,7 @@ inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
   stream.synchronize();
 }
 inline void clear(Stream& stream, void* memory, size_t bytes) {
+  stream.activate();
   check(cudaMemsetAsync(memory, 0, bytes, stream.get()), "clear device memory");
 }
 

@@ -17,9 +17,9 @@
 namespace cuboct::gpu {
 
 #ifdef __CUDACC__
-// An engine of rounds has one device, whose threads alone see these.
-CUBOCT_DEVICE inline uint32_t atomic_add(uint32_t* at, uint32_t value) { return atomicAdd(at, value); }
-CUBOCT_DEVICE inline void atomic_min(uint32_t* at, uint32_t value) { atomicMin(at, value); }
+// As in emu/gpu/device/device_cuda.h: several devices see these.
+CUBOCT_DEVICE inline uint32_t atomic_add(uint32_t* at, uint32_t value) { return atomicAdd_system(at, value); }
+CUBOCT_DEVICE inline void atomic_min(uint32_t* at, uint32_t value) { atomicMin_system(at, value); }
 #else
 inline uint32_t atomic_add(uint32_t* at, uint32_t value) { return (*at += value) - value; }
 inline void atomic_min(uint32_t* at, uint32_t value) { *at = *at < value ? *at : value; }

@@ -56,25 +56,28 @@ struct RoundsControl {
 };
 
 // Cells, dense over the lattice's box: which there are, and how many particles each may have held since the
-// last list.
+// last list. Each plane of cells across an axis is counted on one device.
 struct RoundsCells {
   int low[3], extent[3], period[3];
   const uint8_t* exists;
-  uint32_t* occupancy;
+  int axis;
+  uint32_t* const* occupancy;  // by plane: of its device, dense over the whole box
   uint32_t* entered;       // by particle: of the 27 cells around that of the last list those that it was in
   const int32_t* home[3];  // by particle, the cell of the last list
   uint32_t capacity;
 
-  // kNoStep: there is none.
-  CUBOCT_DEVICE uint32_t find(const int (&cell)[3]) const {
+  // Where the particles of a cell are counted; null: there is no such cell.
+  CUBOCT_DEVICE uint32_t* count_of(const int (&cell)[3]) const {
     int64_t at = 0;
+    int plane = 0;
     for (int a = 2; a >= 0; --a) {
       int c = cell[a] - low[a];
       if (period[a] > 0) c = ((cell[a] % period[a]) + period[a]) % period[a] - low[a];
-      if (c < 0 || c >= extent[a]) return kNoStep;
+      if (c < 0 || c >= extent[a]) return nullptr;
+      if (a == axis) plane = c;
       at = at * extent[a] + c;
     }
-    return exists[at] ? static_cast<uint32_t>(at) : kNoStep;
+    return exists[at] ? occupancy[plane] + at : nullptr;
   }
 };
 
@@ -161,6 +164,8 @@ struct RoundsFrame {
   uint64_t step;
   uint32_t number;  // of the step in its batch, from 1
   RoundsControl* control;
+  RoundsControl* const* others;  // of the other devices
+  int other_count;
 
   CUBOCT_DEVICE bool idle() const { return control->doubt <= number || control->old < number; }
   CUBOCT_DEVICE int64_t own_x(int axis, uint32_t i) const {
@@ -174,6 +179,22 @@ struct RoundsFrame {
     for (int a = 0; a < 3; ++a) place.x[a] = static_cast<uint32_t>(x[a] >> guard);
     place.type = type;
     return place;
+  }
+
+  // What one device finds holds for all.
+  CUBOCT_DEVICE void doubt() const {
+    atomic_min(&control->doubt, number);
+    for (int k = 0; k < other_count; ++k) atomic_min(&others[k]->doubt, number);
+  }
+  CUBOCT_DEVICE void outlive_list() const {
+    if (control->old <= number) return;
+    atomic_min(&control->old, number);
+    for (int k = 0; k < other_count; ++k) atomic_min(&others[k]->old, number);
+  }
+  CUBOCT_DEVICE void outlive_near() const {
+    if (control->near_stale[number + 1] != 0) return;
+    control->near_stale[number + 1] = 1;
+    for (int k = 0; k < other_count; ++k) others[k]->near_stale[number + 1] = 1;
   }
 };
 
@@ -205,7 +226,7 @@ struct RoundsStep : RoundsFrame, Graphs {
     for (int a = 0; a < 3; ++a) motion.v[a] = from.v[a][i], motion.u[a] = motion.drift[a] = 0;
     this->finish(*this, i, own, sums, motion, fits);
     if (last) fits = move(i, motion) && fits;
-    if (!fits) atomic_min(&control->doubt, number);
+    if (!fits) this->doubt();
   }
 
  private:
@@ -272,8 +293,8 @@ struct RoundsStep : RoundsFrame, Graphs {
     if constexpr (!Graphs::kBonded) {
       const RoundsPlace place = place_of(x, from.place[i].type);
       to.place[i] = place;
-      if (moved2_of(list.listed[i], place) > list.allowed2) atomic_min(&control->old, number);
-      if (moved2_of(near.listed[i], place) > near.allowed2) control->near_stale[number + 1] = 1;
+      if (moved2_of(list.listed[i], place) > list.allowed2) outlive_list();
+      if (moved2_of(near.listed[i], place) > near.allowed2) outlive_near();
     }
     return !crosses || enter(i, x);
   }
@@ -288,8 +309,8 @@ struct RoundsStep : RoundsFrame, Graphs {
       const int next = static_cast<int>(x[a] >> frac);
       if (next == cell[a]) continue;
       cell[a] = next;
-      const uint32_t at = cells.find(cell);
-      if (at == kNoStep) return false;
+      uint32_t* const count = cells.count_of(cell);
+      if (count == nullptr) return false;
       int bit = 13;
       for (int b = 0, scale = 1; b < 3; ++b, scale *= 3) {
         const int off = cell[b] - cells.home[b][i];
@@ -299,7 +320,7 @@ struct RoundsStep : RoundsFrame, Graphs {
       const uint32_t entered = cells.entered[i];
       if (entered >> bit & 1u) continue;
       cells.entered[i] = entered | 1u << bit;
-      fits = atomic_add(cells.occupancy + at, 1u) + 1 <= cells.capacity && fits;
+      fits = atomic_add(count, 1u) + 1 <= cells.capacity && fits;
     }
     return fits;
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "emu/gpu/device/storage.h"
+#include "emu/gpu/rounds/rounds_halo.h"
 #include "emu/gpu/rounds/rounds_kernel.h"
 
 namespace cuboct::gpu {
@@ -23,11 +24,14 @@ struct RoundsBins {
   }
 };
 
-// A particle goes back into the ring of cells, and is counted in its bin and its cell.
+// A particle goes back into the ring of cells, and is counted in its bin and its cell. Of several slabs that
+// exchange particles those that another one owns are not.
 struct RoundsSettle {
   RoundsView at;
   RoundsBins bins;
   RoundsCells cells;
+  RoundsSlabs slabs;
+  int self;  // -1: particles stay with their slab
   int guard, frac;
   uint32_t *bin, *count;
   CUBOCT_DEVICE void operator()(uint32_t i) const {
@@ -42,9 +46,13 @@ struct RoundsSettle {
       cell[a] = static_cast<int>(x >> frac);
       place[a] = bins.along(x >> guard, a);
     }
+    if (self >= 0 && slabs.owner(cell[slabs.axis]) != self) {
+      bin[i] = kNoStep;
+      return;
+    }
     bin[i] = bins.of(place);
     atomic_add(count + bin[i], 1u);
-    atomic_add(cells.occupancy + cells.find(cell), 1u);
+    atomic_add(cells.count_of(cell), 1u);
   }
 };
 
@@ -52,7 +60,21 @@ struct RoundsOrder {
   const uint32_t *bin, *first;
   uint32_t *taken, *order;
   CUBOCT_DEVICE void operator()(uint32_t i) const {
-    order[first[bin[i]] + atomic_add(taken + bin[i], 1u)] = i;
+    if (bin[i] != kNoStep) order[first[bin[i]] + atomic_add(taken + bin[i], 1u)] = i;
+  }
+};
+
+// Own particles and ghosts, where they stand.
+struct RoundsBinAll {
+  const int64_t* x[3];
+  RoundsBins bins;
+  int guard;
+  uint32_t *bin, *count;
+  CUBOCT_DEVICE void operator()(uint32_t i) const {
+    int place[3];
+    for (int a = 0; a < 3; ++a) place[a] = bins.along(x[a][i] >> guard, a);
+    bin[i] = bins.of(place);
+    atomic_add(count + bin[i], 1u);
   }
 };
 
@@ -107,7 +129,8 @@ struct RoundsMakeList {
   const RoundsPlace* coarse;  // in units of 2^shift visible ones, in which two bins' widths fit 31 bits
   int coarse_shift;
   const uint32_t *first, *count;
-  uint64_t reach2;  // of these
+  const uint32_t* members;  // of bins, one after the other; null: all particles in their order
+  uint64_t reach2;          // of the coarse units
   uint32_t *entries, *counts;
   uint32_t width;
   size_t stride;
@@ -138,7 +161,8 @@ struct RoundsMakeList {
           }
           if (!there) continue;
           const uint32_t at = bins.of(bin), end = first[at] + count[at];
-          for (uint32_t j = first[at]; j < end; ++j) {
+          for (uint32_t k = first[at]; k < end; ++k) {
+            const uint32_t j = members != nullptr ? members[k] : k;
             if (j == i) continue;
             const RoundsPlace other = coarse[j];
             uint64_t square = 0;
