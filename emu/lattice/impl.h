@@ -29,6 +29,8 @@ struct LatticeEngine::Impl {
   // adds.
   std::vector<int64_t> fields() const;
   void give_bonds(State& state) const;
+  const std::vector<PaddedArray<double>>& fields_now() const;  // of the state, also within a step
+  std::vector<int64_t> bonds_now() const;
   Particle particle(uint32_t index) const;
   template <typename See>
   void for_each_index(const See& see) const {
@@ -45,17 +47,23 @@ struct LatticeEngine::Impl {
 
   // step.cpp
   void step();
+  void take_pairs();
   void clear_blocks();
   void forces_and_update(const Active& active);
   bool sum_pairs();
   std::vector<Int3> kicks();
+  // of(index) of all particles, by id, on rank 0.
+  std::vector<Int3> by_id(const std::function<Int3(uint32_t)>& of) const;
   std::vector<Crossing> all_crossings() const;
   RunError error(Fault fault, uint32_t cell, uint32_t id, int64_t number) const;
   void fail_if_any(std::vector<RunError> faults) const;
   void fail_if_any(std::vector<Found> Block::*faults) const;
 
   // program_step.cpp
-  void run_rounds(const Active& active);
+  void begin_step();
+  bool run_rounds();
+  void end_step();
+  std::vector<Int3> next_velocities();
   void keep_fields();
   void compile_rounds();
   void compile_if_worth();
@@ -104,7 +112,12 @@ struct LatticeEngine::Impl {
   std::optional<graph::FixedProgram> own_program_;  // of a pair law in cells that are no cubes
   std::optional<Rounds> rounds_;                    // of a program; else the kernels step the pair law
   std::vector<PaddedArray<double>> fields_before_;  // as the step found them
-  uint64_t interpreted_ = 0;                        // entries that rounds_ met so far
+  // Of a program, between begin_step() and end_step(): the cells that the step looks at, and whether all of
+  // it fits. Fields and bonds then are those after the step; the state is fields_before_ and the bonds'
+  // before.
+  std::optional<bool> begun_;
+  Active active_;
+  uint64_t interpreted_ = 0;  // entries that rounds_ met so far
   bool may_compile_ = true;
   double cutoff_;  // cells
   int threads_;

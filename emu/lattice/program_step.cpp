@@ -111,7 +111,7 @@ void LatticeEngine::Impl::gather(std::vector<int64_t>& numbers, const std::funct
 }
 
 std::vector<int64_t> LatticeEngine::Impl::fields() const {
-  std::vector<int64_t> fields = own_fields(particles_.fields);
+  std::vector<int64_t> fields = own_fields(fields_now());
   if (!fields.empty())
     gather(
         fields, [&](uint32_t id) { return fields_of(id); }, To::first);
@@ -119,7 +119,7 @@ std::vector<int64_t> LatticeEngine::Impl::fields() const {
 }
 
 void LatticeEngine::Impl::give_bonds(State& state) const {
-  state.bonds = rounds_->give_bonds();
+  state.bonds = bonds_now();
   if (state.bonds.empty()) return;
   gather(
       state.bonds, [&](uint32_t id) { return bonds_of(id); }, To::first);
@@ -127,14 +127,15 @@ void LatticeEngine::Impl::give_bonds(State& state) const {
 }
 
 uint64_t LatticeEngine::Impl::program_hash() const {
-  const std::vector<int64_t> bonds = rounds_->give_bonds();
+  const std::vector<int64_t> bonds = bonds_now();
+  const std::vector<PaddedArray<double>>& fields = fields_now();
   std::atomic<uint64_t> all = 0;
   for_each_part(blocks_.size(), threads_, [&](size_t b, int) {
     uint64_t sum = 0;
     for (uint32_t p = blocks_[b].begin; p < blocks_[b].end; ++p) {
       Hash hash;
       hash.resume(hash_of(lattice_, particle(p)));
-      for (const auto& field : particles_.fields) hash.add(static_cast<int64_t>(field[p]));
+      for (const auto& field : fields) hash.add(static_cast<int64_t>(field[p]));
       if (!bonds.empty()) {
         const Stretch own = bonds_of(particles_.id_of(p));
         for (size_t k = own.begin; k < own.end; ++k) hash.add(bonds[k]);
@@ -154,29 +155,65 @@ std::vector<PaddedArray<double>*> LatticeEngine::Impl::halo_of_round(size_t k) {
   return arrays;
 }
 
-// No particle moves before every round is done, so a fault finds the state as the step did, but for fields.
-void LatticeEngine::Impl::run_rounds(const Active& active) {
+// No particle moves before every round is done, so a fault finds the state as the step did, but for fields
+// and bonds. False, on all ranks, where something does not fit.
+bool LatticeEngine::Impl::run_rounds() {
   compile_if_worth();
   counters_.compiled_steps += rounds_->compiled();
   keep_fields();
   std::atomic<bool> fits = true;
   const auto all = [&](const auto& work) {
-    for_each_block([&](Block& block) {
-      if (!work(block)) fits = false;
-    });
-    if (!fits && !shared()) fail_as_golden();
+    if (fits || shared())
+      for_each_block([&](Block& block) {
+        if (!work(block)) fits = false;
+      });
   };
   for (size_t k = 0; k < rounds_->program().rounds.size(); ++k) {
     if (shared()) exchange(halo_of_round(k));
-    all([&](Block& block) { return rounds_->meet(k, number_of(block), {particles_, block, active, step_}); });
-    all([&](Block& block) { return rounds_->finish(k, number_of(block), block, particles_, active, step_); });
+    all([&](Block& block) {
+      return rounds_->meet(k, number_of(block), {particles_, block, active_, step_});
+    });
+    all([&](Block& block) {
+      return rounds_->finish(k, number_of(block), block, particles_, active_, step_);
+    });
   }
-  if (shared()) {
-    std::array<double, 1> failed{fits ? 0.0 : 1.0};
-    options_.ranks->most(failed);
-    if (failed[0] > 0) fail_as_golden();
-  }
-  for_each_block([&](Block& block) { rounds_->move(block, particles_, active); });
+  std::array<double, 1> failed{fits ? 0.0 : 1.0};
+  if (shared()) options_.ranks->most(failed);
+  return failed[0] == 0;
+}
+
+void LatticeEngine::Impl::begin_step() {
+  refresh_lists();
+  active_ = quiet_ ? quiet_->next() : Active();
+  clear_blocks();
+  begun_ = run_rounds();
+}
+
+void LatticeEngine::Impl::end_step() {
+  if (!begun_) begin_step();
+  if (!*begun_) fail_as_golden();
+  begun_.reset();
+  for_each_block([&](Block& block) { rounds_->move(block, particles_, active_); });
+}
+
+std::vector<Int3> LatticeEngine::Impl::next_velocities() {
+  if (!begun_) begin_step();
+  if (!*begun_) return {};
+  const Moves& moves = rounds_->moves();
+  return by_id([&](uint32_t p) {
+    Int3 v = particle(p).v;
+    if (active_.awake == nullptr || active_.awake[particles_.cell[p]] != 0)
+      for (size_t a = 0; a < static_cast<size_t>(moves.axes); ++a) v[a] = static_cast<int64_t>(moves.v[a][p]);
+    return v;
+  });
+}
+
+const std::vector<PaddedArray<double>>& LatticeEngine::Impl::fields_now() const {
+  return begun_ ? fields_before_ : particles_.fields;
+}
+
+std::vector<int64_t> LatticeEngine::Impl::bonds_now() const {
+  return begun_ ? rounds_->bonds_before() : rounds_->give_bonds();
 }
 
 // Golden takes the same step, on each rank, and says what does not fit.

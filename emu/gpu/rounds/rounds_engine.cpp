@@ -92,6 +92,22 @@ class RoundsEngine final : public IntegerEngine {
     return sorted;
   }
   uint64_t hash() const override { return hash_of(plan_.lattice, state()); }
+  std::vector<Int3> next_velocities() override {
+    // A list that has served may leave a doubt that a new one does not.
+    do {
+      if (!listed_) make_lists();
+      if (kernels_ && !proven_) prove();
+      const Places here = places();
+      const bool done = run(1, nullptr, proven_) == 1;
+      std::vector<Int3> v;
+      if (done) v = velocities();
+      go_to(here), near_stale_ = true;
+      if (done) return v;
+      listed_ = age_ == 0;
+    } while (!listed_);
+    return GoldenIntegers(program_, plan_.lattice, plan_.arch.capacity, state(), plan_.program->rows)
+        .next_velocities();
+  }
   // Golden's slots are not kept: by id.
   void for_each_slot(const std::function<void(const Particle&)>& see) const override {
     for (const Particle& particle : state().particles) see(particle);
@@ -301,6 +317,17 @@ class RoundsEngine final : public IntegerEngine {
         for (const auto& values : numbers)
           state.bonds.push_back(values[(b - rows_->first[id]) * count_ + order[id]]);
     state.bond_begin = begins_of(*rows_, bond_count());
+  }
+
+  // Of copy `at_`, by id.
+  std::vector<Int3> velocities() const {
+    std::vector<Int3> by_id(count_);
+    const std::vector<uint32_t> ids = copies_[who_].id.host(stream_, 0, count_);
+    for (size_t a = 0; a < 3; ++a) {
+      const std::vector<int64_t> v = copies_[index(at_)].v[a].host(stream_, 0, count_);
+      for (size_t k = 0; k < count_; ++k) by_id[ids[k]][a] = v[k];
+    }
+    return by_id;
   }
 
   // Of copy `at_`, in the order of the device.

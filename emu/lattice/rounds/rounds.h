@@ -51,6 +51,8 @@ class Rounds {
               uint64_t step);
   // After the last round: velocities, displacements and places, and who left its cell.
   void move(Block& block, Particles& particles, const Active& active);
+  // What that will do, of the particles that are awake.
+  const Moves& moves() const { return moves_; }
 
  private:
   struct Part {
