@@ -40,6 +40,7 @@ struct Input {
   uint64_t stall_seed = 1;
   std::string stage{}, from{};  // model/run/start.h
   bool looks_only = false;      // the same
+  std::string scene_path{};     // of which `scene` is a copy; empty: of none
   std::string faults{};  // on the links of such an engine: hw/arch/link_code.h, read_fault_share; empty: none
   uint64_t fault_seed = 1;
 

@@ -57,11 +57,7 @@ ProgramEngine::ProgramEngine(const Sources& sources, const std::string& engine, 
       scene_(scene),
       setup_(setup),
       input_(write_sources(sources, scratch_)),
-      state_(setup.initial) {
-  if (options.is_real(engine))
-    throw InputError(fmt::format("the {} engine in real numbers cannot be stepped", engine),
-                     "with precision=\"fixed\" it can; cuboct.run runs it whole");
-}
+      state_(setup.initial) {}
 
 // The state so far, as a run that ended.
 void ProgramEngine::leave_state() const {

@@ -14,8 +14,7 @@ namespace cuboct::python {
 
 class ProgramEngine : public StateEngine {
  public:
-  // InputError for an engine in real numbers: its bits depend on more than the particles. `scene` and `setup`
-  // are those of `sources`; references are kept.
+  // `scene` and `setup` are those of `sources`; references are kept.
   ProgramEngine(const Sources& sources, const std::string& engine, const EngineOptions& options,
                 const Scene& scene, const Setup& setup);
 

@@ -21,6 +21,7 @@
 #include "model/trace/raster_plot.h"
 #include "python/catch_interrupt.h"
 #include "python/program_engine.h"
+#include "python/program_integers.h"
 
 namespace cuboct::python {
 namespace {
@@ -85,11 +86,15 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   real_ = options.is_real(engine_name_);
   text_ = loaded.setup.plan.program != nullptr;
   program_ = engine_row(engine_name_).here == Here::none || options.ranks > 1;
+  // Its bits depend on more than the particles.
+  if (program_ && real_)
+    throw InputError(fmt::format("the {} engine in real numbers cannot be stepped", engine_name_),
+                     "with precision=\"fixed\" it can; cuboct.run runs it whole");
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
   probe_every_ = whole_steps(scene_, probe_every.value_or(scene_.probe_every));
   energy_every_ = probe_every ? probe_every_ : scene_.energy_every;
-  if (real_ && !program_)
+  if (real_)
     start_ = scene_.body;
   else
     setup_.initial = begin_of(scene_, setup_.plan, nullptr);
@@ -131,10 +136,9 @@ void Simulation::make_engine() {
 std::unique_ptr<Engine> Simulation::engine_of_text() {
   const Plan& plan = setup_.plan;
   if (program_)
-    throw InputError(fmt::format("a rule of text is not stepped in the {} engine{}", engine_name_,
-                                 options_.ranks > 1 ? " of several processes" : ""),
-                     "golden and lattice step it, with the same bits; cuboct.run runs it whole")
-        .about({"rule.file", "rule"});
+    return integer_run(scene_, plan, setup_.initial, [&](const State& state) {
+      return std::make_unique<ProgramIntegers>(sources_, engine_name_, options_, scene_, plan, state);
+    });
   if (engine_row(engine_name_).here == Here::golden) return integer_run(scene_, plan, setup_.initial);
   emu::LatticeOptions lattice;
   lattice.threads = options_.threads;
@@ -159,7 +163,7 @@ void Simulation::advance(uint64_t steps) {
   try {
     engine_->advance(steps);
   } catch (const RunError& e) {
-    stop({e.fault, before, e.cell, e.particle, e.number, e.what()});
+    stop({e.fault, program_ ? e.step : before, e.cell, e.particle, e.number, e.what()});
   } catch (const StepError& error) {
     StopReason reason = error.reason;
     if (!program_) reason.step = before;

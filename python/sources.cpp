@@ -48,6 +48,7 @@ Input write_sources(const Sources& sources, const Scratch& scratch) {
   input.from = sources.from;
   if (!is_in_file(sources.scene, sources.scene_path)) {
     input.scene = scratch.path("scene.toml");
+    input.scene_path = sources.scene_path;
     write_text(input.scene, sources.scene);
   }
   if (sources.arch.empty()) return input;

@@ -26,8 +26,7 @@ std::vector<StageName> stages_of(const Sources& sources);
 // Throws InputError where the stage cannot be read, wherever it is to begin.
 void read_stage(const Sources& sources);
 
-// The same as files, which programs read: the scene's own where it is what the file holds, so that paths
-// within count from there.
+// The same as files, which programs read: the scene's own where it is what the file holds.
 Input write_sources(const Sources& sources, const Scratch& scratch);
 
 // By name what a [rule] shows of its particles, [particle x its numbers]; none of pair laws.

@@ -95,7 +95,7 @@ EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded
   request.cycles &= row.counts_if_asked;
   remote_.emplace(RemoteRun{program, input.scene, input.arch, path, own_arguments(row, input, options),
                             row.ranks.empty() ? 1 : options.ranks, once && row.devices, input.stage,
-                            input.from, options.quiet, std::move(request)});
+                            input.from, input.scene_path, options.quiet, std::move(request)});
 }
 
 Recorded EngineRun::finish() { return remote_ ? remote_->finish() : here_(); }

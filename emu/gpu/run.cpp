@@ -225,6 +225,7 @@ class TextRunner : public IntegerEngine {
   uint64_t step_count() const override { return engine_->step_count(); }
   State state() const override { return engine_->state(); }
   uint64_t hash() const override { return engine_->hash(); }
+  std::vector<Int3> next_velocities() override { return engine_->next_velocities(); }
   void for_each_slot(const std::function<void(const Particle&)>& see) const override {
     engine_->for_each_slot(see);
   }

@@ -77,10 +77,10 @@ void TextRun::advance(uint64_t steps, std::vector<uint64_t>*) {
 
 void TextRun::tell(const std::string& why) {
   const auto stop = [&](const std::string& text) { return StepError({Fault::none, step_, 0, 0, 0, text}); };
-  body();
-  stale_ = true;  // the engine goes a step ahead
+  RealEngine& goes_ahead = reference();
+  stale_ = true;
   try {
-    engine_->step(step_);
+    goes_ahead.step(step_);
   } catch (const std::runtime_error& error) {
     throw stop(error.what());
   }
@@ -90,31 +90,38 @@ void TextRun::tell(const std::string& why) {
 void TextRun::renew() {
   device_->read(body_);
   for (const Vec3& v : body_.v) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
-  engine_->place(body_, step_);
-  engine_->recall(device_->kept());
+  look_.reset();
 }
 
-RunState TextRun::frame(bool forces) {
-  const Body& now = body();
-  const RuleProgram& program = *scene_.rule.rounds->text();
-  RealFrame frame{step_, now.x, now.v, {}, now.u, {}};
-  if (!forces && scene_.rule.rounds->declaration().shown.empty()) return frame;
-  RealLook look;
+void TextRun::follow(RealEngine& reference) {
+  reference.place(body_, step_);
+  reference.recall(device_->kept());
+}
+
+const RealLook& TextRun::look() {
+  body();
+  if (look_) return *look_;
   try {
-    look = device_->look();
+    return look_.emplace(device_->look());
   } catch (const TableEnds& error) {
     throw RoundsError(error.what());
   }
-  if (forces)
-    frame.force = program.still ? std::vector<Vec3>(now.size(), Vec3::Zero()) : std::move(look.force);
-  for (const ProgramField& field : program.particle) {
+}
+
+std::vector<Vec3> TextRun::forces() {
+  return scene_.rule.rounds->text()->still ? std::vector<Vec3>(body_.size(), Vec3::Zero()) : look().force;
+}
+
+std::vector<std::vector<double>> TextRun::fields() {
+  std::vector<std::vector<double>> shown;
+  for (const ProgramField& field : scene_.rule.rounds->text()->particle) {
     if (!field.shown) continue;
     const uint32_t numbers = field.numbers();
-    std::vector<double>& values = frame.shown.emplace_back(numbers * now.size());
-    for (size_t i = 0; i < now.size(); ++i)
-      for (uint32_t k = 0; k < numbers; ++k) values[numbers * i + k] = look.fields[field.first + k][i];
+    std::vector<double>& values = shown.emplace_back(numbers * body_.size());
+    for (size_t i = 0; i < body_.size(); ++i)
+      for (uint32_t k = 0; k < numbers; ++k) values[numbers * i + k] = look().fields[field.first + k][i];
   }
-  return frame;
+  return shown;
 }
 
 double TextRun::largest_speed() {

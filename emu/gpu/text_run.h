@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A rule that is text, in floats or doubles on a GPU, behind the interface of all engines. The device makes
-// the steps, forces and fields. What else is asked of a state, such as its energies, the reference tells of
-// it.
+// the steps, forces and fields. The reference tells a state's energies and damage where those are asked for.
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "emu/gpu/rounds/real_rounds_engine.h"
 #include "emu/gpu/run.h"
@@ -19,7 +19,6 @@ class TextRun final : public RoundsRun {
                                        CheckpointReader* from);
 
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
-  RunState frame(bool forces) override;
   double largest_speed() override;
   cuboct::Counters counters() override;
   Notes notes() override { return notes_; }
@@ -29,12 +28,17 @@ class TextRun final : public RoundsRun {
   TextRun(const Scene& scene, const Body& body, double cell_edge, const GpuChoice& choice,
           const Memory& memory);
   void renew() override;
+  void follow(RealEngine& reference) override;
+  std::vector<Vec3> forces() override;
+  std::vector<std::vector<double>> fields() override;
+  const RealLook& look();
   // Why the next step is none: in the reference's words where it is none for it, too.
   [[noreturn]] void tell(const std::string& why);
 
   const GpuChoice& choice_;
   double cell_edge_, fastest_ = 0;  // m; m/s, along an axis, of the states that were looked at
   std::unique_ptr<RealRounds> device_;
+  std::optional<RealLook> look_;  // of body()
   Notes notes_;
 };
 

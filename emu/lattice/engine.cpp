@@ -213,19 +213,23 @@ std::vector<Int3> LatticeEngine::Impl::kicks() {
   if (rounds_) return {};
   if (!summed_) summed_ = sum_pairs();
   if (!summed_) return {};
+  return by_id([&](uint32_t p) { return sums_[p]; });
+}
+
+std::vector<Int3> LatticeEngine::Impl::by_id(const std::function<Int3(uint32_t)>& of) const {
   std::vector<Int3> all(count_);
   if (!shared()) {
-    for_each_index([&](uint32_t p) { all[particles_.id_of(p)] = sums_[p]; });
+    for_each_index([&](uint32_t p) { all[particles_.id_of(p)] = of(p); });
     return all;
   }
-  struct Kick {
+  struct One {
     uint32_t id;
-    Int3 sum;
+    Int3 value;
   };
   std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
-  for_each_index([&](uint32_t p) { append(to[0], Kick{particles_.id_of(p), sums_[p]}); });
+  for_each_index([&](uint32_t p) { append(to[0], One{particles_.id_of(p), of(p)}); });
   const std::vector<Bytes> from = options_.ranks->exchange(to);
-  for (const Bytes& bytes : from) for_each_of<Kick>(bytes, [&](const Kick& one) { all[one.id] = one.sum; });
+  for (const Bytes& bytes : from) for_each_of<One>(bytes, [&](const One& one) { all[one.id] = one.value; });
   return all;
 }
 
@@ -250,6 +254,7 @@ const std::string& LatticeEngine::simd() const { return impl_->kernels_.name; }
 std::span<const Leaving> LatticeEngine::leaving() const { return impl_->leaving_; }
 
 std::vector<Int3> LatticeEngine::kicks() { return impl_->kicks(); }
+std::vector<Int3> LatticeEngine::next_velocities() { return impl_->next_velocities(); }
 
 bool LatticeEngine::kicks(std::span<const uint32_t> ids, std::span<Int3> to) {
   if (impl_->rounds_) return false;

@@ -76,6 +76,9 @@ class LatticeEngine {
   std::vector<Int3> kicks();
   // Those of some particles (ids), as many as `to` holds; false where some kick does not fit. Not with ranks.
   bool kicks(std::span<const uint32_t> ids, std::span<Int3> to);
+  // Of a program: those of Golden::next_velocities, of all on rank 0. The engine keeps the step that it takes
+  // for that until step() asks for it.
+  std::vector<Int3> next_velocities();
   Particle particle(uint32_t id) const;  // not with ranks
   double largest_speed() const;          // of this rank, along an axis: cells per step
   void for_each_slot(const std::function<void(const Particle&)>& see) const;  // by cell, then slot; of

@@ -45,17 +45,24 @@ struct LatticeEngine::Impl {
 
   // step.cpp
   void step();
+  void take_pairs();
   void clear_blocks();
   void forces_and_update(const Active& active);
   bool sum_pairs();
   std::vector<Int3> kicks();
+  // of(index) of all particles, by id, on rank 0.
+  std::vector<Int3> by_id(const std::function<Int3(uint32_t)>& of) const;
   std::vector<Crossing> all_crossings() const;
   RunError error(Fault fault, uint32_t cell, uint32_t id, int64_t number) const;
   void fail_if_any(std::vector<RunError> faults) const;
   void fail_if_any(std::vector<Found> Block::*faults) const;
 
   // program_step.cpp
-  void run_rounds(const Active& active);
+  void run_rounds();
+  void take_rounds();
+  void look_ahead();
+  void change_places();
+  std::vector<Int3> next_velocities();
   void compile_rounds();
   void take_kept_code();
   void compile_if_worth();
@@ -103,6 +110,15 @@ struct LatticeEngine::Impl {
   std::optional<graph::FixedProgram> own_program_;  // of a pair law in cells that are no cubes
   std::optional<Rounds> rounds_;                    // of a program; else the kernels step the pair law
   uint64_t interpreted_ = 0;                        // entries that rounds_ met so far
+  // Of a program, while some look at the step to come: what particles and bonds have after it. What it told
+  // stands in the blocks.
+  struct Ahead {
+    std::array<PaddedArray<double>, 3> x, v, u;
+    std::array<PaddedArray<int32_t>, 3> residue;
+    std::vector<PaddedArray<double>> fields;
+    std::vector<Sums> bonds;
+  };
+  std::optional<Ahead> ahead_;
   bool may_compile_ = true;
   double cutoff_;  // cells
   int threads_;

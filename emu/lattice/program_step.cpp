@@ -158,7 +158,10 @@ std::vector<PaddedArray<double>*> LatticeEngine::Impl::halo_of_round(size_t k) {
 
 // All blocks are done with a round before any begins the next. Where something did not fit, the rounds after
 // it are not run; ranks that do not know yet go on, and step() has the least fault of the first such round.
-void LatticeEngine::Impl::run_rounds(const Active& active) {
+void LatticeEngine::Impl::run_rounds() {
+  refresh_lists();
+  const Active active = quiet_ ? quiet_->next() : Active();
+  clear_blocks();
   compile_if_worth();
   counters_.compiled_steps += rounds_->compiled();
   const auto all = [&](const auto& work) {
@@ -186,6 +189,49 @@ void LatticeEngine::Impl::run_rounds(const Active& active) {
   options_.ranks->most(first);
   if (-first[0] < static_cast<double>(failed_in))
     for (Block& block : blocks_) block.pair_faults.clear(), block.update_faults.clear();
+}
+
+void LatticeEngine::Impl::take_rounds() {
+  if (!ahead_) return run_rounds();
+  change_places();
+  ahead_.reset();
+}
+
+// The state becomes what is ahead, and the other way round.
+void LatticeEngine::Impl::change_places() {
+  std::swap(particles_.x, ahead_->x), std::swap(particles_.v, ahead_->v);
+  std::swap(particles_.u, ahead_->u), std::swap(particles_.residue, ahead_->residue);
+  std::swap(particles_.fields, ahead_->fields);
+  rounds_->swap_bonds(ahead_->bonds);
+}
+
+// Lists may be made anew, and particles be stored anew, but for these the state is what it was.
+void LatticeEngine::Impl::look_ahead() {
+  refresh_lists();
+  Ahead before;
+  for (size_t a = 0; a < 3; ++a) {
+    before.x[a] = particles_.x[a].copy(), before.v[a] = particles_.v[a].copy();
+    before.u[a] = particles_.u[a].copy(), before.residue[a] = particles_.residue[a].copy();
+  }
+  for (const auto& field : particles_.fields) before.fields.push_back(field.copy());
+  before.bonds = rounds_->copy_bonds();
+  run_rounds();
+  ahead_ = std::move(before);
+  change_places();
+}
+
+std::vector<Int3> LatticeEngine::Impl::next_velocities() {
+  if (!ahead_) look_ahead();
+  std::array<double, 1> failed{};
+  for (const Block& block : blocks_)
+    if (!block.pair_faults.empty() || !block.update_faults.empty()) failed[0] = 1;
+  if (shared()) options_.ranks->most(failed);
+  if (failed[0] > 0) return {};
+  return by_id([&](uint32_t p) {
+    Int3 v;
+    for (size_t a = 0; a < 3; ++a) v[a] = static_cast<int64_t>(ahead_->v[a][p]);
+    return v;
+  });
 }
 
 }  // namespace cuboct::emu

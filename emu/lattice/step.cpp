@@ -91,17 +91,18 @@ void LatticeEngine::Impl::clear_blocks() {
   }
 }
 
-void LatticeEngine::Impl::step() {
+void LatticeEngine::Impl::take_pairs() {
   refresh_lists();
-  Active active;
-  if (quiet_) active = quiet_->next();
+  const Active active = quiet_ ? quiet_->next() : Active();
   clear_blocks();
-  if (rounds_)
-    run_rounds(active);
-  else if (std::exchange(summed_, false))
+  if (std::exchange(summed_, false))
     for_each_block([&](Block& block) { kernels_.update(rule_, particles_, active, sums_.data(), block); });
   else
     forces_and_update(active);
+}
+
+void LatticeEngine::Impl::step() {
+  rounds_ ? take_rounds() : take_pairs();
 
   // The largest speed, and whether some rank met a fault of each kind.
   std::array<double, 3> most{};

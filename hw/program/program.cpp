@@ -18,6 +18,7 @@
 #include "model/base/output.h"
 #include "model/base/steps.h"
 #include "model/base/text.h"
+#include "model/config/config.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
 #include "model/trace/trace_file.h"
@@ -28,7 +29,7 @@ namespace {
 // What is parsed and then settled.
 struct Parsed {
   ProgramOptions options;
-  std::string frames_file, frame_files, begun, interval, error, log;
+  std::string scene_path, frames_file, frame_files, begun, interval, error, log;
   bool frames_given = false, unpacked = false;
 };
 
@@ -138,7 +139,8 @@ int run(EngineProgram& program, Parsed& parsed) {
   check(parsed);
   if (!options.out.empty() && program.leads()) check_writable(options.out);
   if (!parsed.interval.empty()) read_interval(parsed.interval, options.run.checkpoint);
-  Scene scene = load_scene(options.scene, {options.stage, options.from});
+  const std::string& path = parsed.scene_path.empty() ? options.scene : parsed.scene_path;
+  Scene scene = load_scene(read_config_text(options.scene), path, {options.stage, options.from});
   program.begin(scene);
   const Arch arch = read_arch(options.arch);
   return with_places(scene, arch, [&] { return run_scene(program, parsed, scene, arch); });
@@ -155,6 +157,9 @@ void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
   RunRequest& run = options.run;
   const ProgramAbilities& can = program.abilities;
   app.option("scene", options.scene, "Scene file (TOML)");
+  app.option("--scene-path", parsed.scene_path,
+             "The scene's own path, where a copy is read: what it names lies beside it, and errors tell it")
+      .type_name("FILE");
   app.option("--arch", options.arch, "Machine description (TOML); the defaults without one");
   app.option("--stage", options.stage, "Of a scene with [[stage]]: the one to run");
   app.option("--from", options.from, "Directory of a run: this one begins with its last state");

@@ -22,7 +22,8 @@ Remote::Remote(RemoteRun run) : run_(std::move(run)) {
       program_arguments(run_.scene, run_.arch, run_.request, run_.trace, file(".steps"));
   arguments.insert(arguments.end(), {"--error", file(".error")});
   arguments.insert(arguments.end(), run_.own.begin(), run_.own.end());
-  for (const auto& [option, value] : {std::pair{"--stage", run_.stage}, {"--from", run_.from}})
+  for (const auto& [option, value] :
+       {std::pair{"--stage", run_.stage}, {"--from", run_.from}, {"--scene-path", run_.scene_path}})
     if (!value.empty()) arguments.insert(arguments.end(), {option, value});
   if (run_.unpacked) arguments.emplace_back("--unpacked");
   if (run_.request.keep) {

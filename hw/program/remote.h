@@ -21,6 +21,7 @@ struct RemoteRun {
   int ranks = 1;                   // more: processes over MPI
   bool unpacked = false;           // the trace: packing millions of particles takes longer than many steps
   std::string stage{}, from{};     // model/run/start.h
+  std::string scene_path{};        // of which `scene` is a copy; empty: of none
   bool quiet = false;              // the program's words are kept, else its table on stderr is shown
   RunRequest request{};
 };

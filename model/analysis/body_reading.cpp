@@ -3,24 +3,32 @@
 
 namespace cuboct {
 
-Reading read_body(const Rule& rule, const Body& body, const std::vector<Vec3>& force, double late,
-                  const Asked& asked) {
+std::vector<Vec3> velocities_at(const Rule& rule, const Body& body, const std::vector<Vec3>& force,
+                                double late) {
+  std::vector<Vec3> v = body.v;
+  if (late != 0)
+    for (size_t i = 0; i < v.size(); ++i) v[i] += late * acceleration(rule, body, i, force[i]);
+  return v;
+}
+
+Reading read_body(const Rule& rule, const Body& body, const std::vector<Vec3>& force,
+                  const std::vector<Vec3>& v, const Asked& asked) {
   Reading reading;
   for (const uint32_t id : asked.ids) {
     reading.x.push_back(body.x[id]);
     reading.force.push_back(force.empty() ? Vec3(Vec3::Zero()) : force[id]);
-    if (asked.velocities) reading.v.push_back(body.v[id] + late * acceleration(rule, body, id, force[id]));
+    if (asked.velocities) reading.v.push_back(v[id]);
   }
   if (!asked.energies) return reading;
   Energies& e = reading.energies;
   for (size_t i = 0; i < body.size(); ++i) {
-    const Vec3 v = body.v[i] + late * acceleration(rule, body, i, force[i]);
     const ParticleType& type = rule.types[body.type[i]];
     const double relative = rule.relative_mass(body.type[i]), mass = rule.mass * relative;
-    e.kinetic += mass * v.squaredNorm() / 2;
+    e.kinetic += mass * v[i].squaredNorm() / 2;
     e.gravity -= mass * type.gravity.dot(body.x[i]);
     for (int a = 0; a < 3; ++a)
-      if (is_free(type, a)) e.free.kinetic += mass * v[a] * v[a] / 2, e.free.velocities[a] += relative * v[a];
+      if (is_free(type, a))
+        e.free.kinetic += mass * v[i][a] * v[i][a] / 2, e.free.velocities[a] += relative * v[i][a];
   }
   return reading;
 }

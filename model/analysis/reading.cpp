@@ -15,9 +15,10 @@ Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& latt
 
 Reading read_reference(const Rule& rule, const Reference& reference, double late, const Asked& asked) {
   const Body& body = reference.body();
-  std::vector<Vec3> force;
-  if (asked.forces || asked.velocities || asked.energies) force = reference.forces();
-  Reading reading = read_body(rule, body, force, late, asked);
+  std::vector<Vec3> force, v;
+  if (takes_kicks(asked)) force = reference.forces();
+  if (asked.velocities || asked.energies) v = velocities_at(rule, body, force, late);
+  Reading reading = read_body(rule, body, force, v, asked);
   reading.step = reference.step_count();
   if (!asked.energies) return reading;
   reading.energies.potential = reference.potential_energy();

@@ -188,6 +188,23 @@ Golden::Moving Golden::moved(const Particle& particle, FinishRun& run, size_t la
   return m;
 }
 
+std::vector<Int3> Golden::next_velocities() const {
+  Golden next = *this;
+  std::vector<std::vector<Moving>> moving(cells_.size());
+  try {
+    for (const graph::Round& round : program_->rounds) next.finish(round, next.meet(round), moving);
+  } catch (const RunError&) {
+    return {};
+  }
+  std::vector<Int3> v;
+  for (const std::vector<Moving>& cell : moving)
+    for (const Moving& m : cell) {
+      if (m.particle.id >= v.size()) v.resize(m.particle.id + 1);
+      v[m.particle.id] = m.particle.v;
+    }
+  return v;
+}
+
 void Golden::step() {
   // Rounds write fields and bonds where they stand: a step that fails puts back what it found.
   std::pair before(fields_, bonds_);

@@ -28,6 +28,9 @@ class Golden {
   void step();
 
   State state() const;  // sorted by id
+  // Velocities that the rounds of the next step give, by id; the state stays. Empty where a round cannot be
+  // done.
+  std::vector<Int3> next_velocities() const;
   uint64_t step_count() const { return step_; }
   // Particles by cell, in the order of the cell's slots: the order that the machine keeps.
   const std::vector<std::vector<Particle>>& cells() const { return cells_; }

@@ -18,6 +18,8 @@ class IntegerEngine {
   virtual uint64_t step_count() const = 0;
   virtual State state() const = 0;  // sorted by id
   virtual uint64_t hash() const = 0;
+  // As Golden's; of processes that share a scene one has them.
+  virtual std::vector<Int3> next_velocities() = 0;
   // Particles by cell, then slot.
   virtual void for_each_slot(const std::function<void(const Particle&)>& see) const = 0;
   virtual Counters counters() const { return {}; }
@@ -45,6 +47,7 @@ class GoldenIntegers final : public IntegerEngine {
   uint64_t step_count() const override { return golden_.step_count(); }
   State state() const override { return golden_.state(); }
   uint64_t hash() const override { return hash_of(lattice_, golden_.state()); }
+  std::vector<Int3> next_velocities() override { return golden_.next_velocities(); }
   void for_each_slot(const std::function<void(const Particle&)>& see) const override {
     for (const auto& cell : golden_.cells())
       for (const Particle& particle : cell) see(particle);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "model/base/error.h"
 #include "model/program/program_rule.h"
@@ -113,20 +114,76 @@ auto IntegerRun::together(const Work& work) {
 }
 
 Reading IntegerRun::read(const Asked& asked) {
-  return together([&] { return RoundsRun::read(asked); });
+  return together([&] {
+    body();
+    if (asked.velocities || asked.energies) next_velocities_ = program_->next_velocities();
+    return leads() ? RoundsRun::read(asked) : Reading{};
+  });
 }
 
 RunState IntegerRun::frame(bool forces) {
-  return together([&] { return RoundsRun::frame(forces); });
+  return together([&] {
+    body();
+    return leads() ? RoundsRun::frame(forces) : RunState(RealFrame{});
+  });
 }
 
-// Places, velocities and what the rule keeps of each particle, as its terms in doubles take them.
+const Body* IntegerRun::saved_body() {
+  const Body& now = body();
+  return leads() ? RoundsRun::saved_body() : &now;
+}
+
+double IntegerRun::largest_speed() {
+  body();
+  return fastest_ * scene_.rule.dt / setting_.fixed.cell_edge;
+}
+
+// Those of the two half steps around the positions have their mean there, to the last bit of what the step
+// adds. What is imposed does not change within a step, but for the one that imposes it.
+std::vector<Vec3> IntegerRun::velocities(const std::vector<Vec3>& force) {
+  const std::vector<Int3> next = std::exchange(next_velocities_, {});
+  if (next.empty()) return RoundsRun::velocities(force);  // no step follows
+  const Vec3 unit = velocity_units(setting_.fixed);
+  std::vector<Vec3> v = body_.v;
+  for (size_t i = 0; i < v.size(); ++i)
+    for (size_t a = 0; a < 3; ++a)
+      if (!scene_.rule.types[body_.type[i]].imposed[a])
+        v[i][static_cast<int>(a)] =
+            (v[i][static_cast<int>(a)] + static_cast<double>(next[i][a]) * unit[static_cast<int>(a)]) / 2;
+  return v;
+}
+
+std::vector<std::vector<double>> IntegerRun::fields() {
+  if (!hands_on_fields()) return RoundsRun::fields();
+  std::vector<std::vector<double>> shown;
+  const graph::FixedProgram& program = setting_.program.program;
+  for (size_t k = 0; k < text_of(scene_).particle.size(); ++k) {
+    const ProgramField& field = text_of(scene_).particle[k];
+    if (!field.shown) continue;
+    const auto f =
+        static_cast<size_t>(std::ranges::find(setting_.program.field, k) - setting_.program.field.begin());
+    const auto first = static_cast<size_t>(program.place(static_cast<int>(f)));
+    std::vector<double>& values = shown.emplace_back();
+    for (size_t i = 0; i < body_.size(); ++i)
+      for (uint32_t n = 0; n < field.numbers(); ++n)
+        values.push_back(real_of(setting_.program.scales[f],
+                                 field_numbers_[i * static_cast<size_t>(program.numbers()) + first + n]));
+  }
+  return shown;
+}
+
 void IntegerRun::renew() {
-  const State state = program_->state();
+  State state = program_->state();
   if (!leads()) return;
   body_ = with_bonds(scene_.rule, to_real(state, setting_.fixed, setting_.lattice, setting_.origin), body_);
+  for (const Vec3& v : body_.v) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
+  field_numbers_ = std::move(state.fields), bond_numbers_ = std::move(state.bonds);
+}
+
+// What the rule keeps of each particle and bond, as its terms in doubles take it.
+void IntegerRun::follow(RealEngine& reference) {
   const IntegerProgram& program = setting_.program;
-  std::vector<uint64_t> kept = engine_->kept_terms()->memory();
+  std::vector<uint64_t> kept = reference.kept_terms()->memory();
   auto to = kept.begin();
   // The numbers of a field, where it goes on: of the particles, or of the bonds, one number after another.
   const auto recall = [&](const ProgramField& field, const FieldScale& scale,
@@ -138,7 +195,7 @@ void IntegerRun::renew() {
   for (size_t f = 0; f < program.field.size(); ++f) {
     const ProgramField& field = text_of(scene_).particle[program.field[f]];
     if (field.kept)
-      recall(field, program.scales[f], state.fields,
+      recall(field, program.scales[f], field_numbers_,
              static_cast<size_t>(program.program.place(static_cast<int>(f))),
              static_cast<size_t>(program.program.numbers()));
   }
@@ -147,18 +204,19 @@ void IntegerRun::renew() {
     const auto at = std::ranges::find(program.bond_field, k);
     const auto f = at - program.bond_field.begin();
     if (at != program.bond_field.end())
-      recall(field, program.bond_scales[static_cast<size_t>(f)], state.bonds,
+      recall(field, program.bond_scales[static_cast<size_t>(f)], bond_numbers_,
              static_cast<size_t>(program.program.bond_place(static_cast<int>(f))),
              static_cast<size_t>(program.program.bond_numbers()));
     else if (field.kept)
       to += static_cast<ptrdiff_t>(field.numbers() * program.rows->other.size());
   }
-  engine_->place(body_, step_);
-  engine_->recall(kept);
+  reference.place(body_, step_);
+  reference.recall(kept);
 }
 
 Counters IntegerRun::counters_of_state() {
-  return setting_.program.rows ? RoundsRun::counters_of_state() : Counters();
+  body();
+  return setting_.program.rows && leads() ? RoundsRun::counters_of_state() : Counters();
 }
 
 Notes IntegerRun::notes() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A rule that is text, in integers: an engine of programs steps it, and its terms in doubles tell forces,
-// energies and fields of the states that are looked at.
+// A rule that is text, in integers: an engine of programs steps it. Positions, velocities and fields that go
+// on are those of its state. Its terms in doubles tell forces, energies and other fields where those are
+// asked for.
 #pragma once
 
 #include "model/program/integer_program.h"
@@ -28,12 +29,14 @@ class IntegerRun final : public RoundsRun {
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override;
   uint64_t hash() override { return program_->hash(); }
   Momentum momentum() override;
+  double largest_speed() override;
   Counters counters() override { return program_->counters(); }
   Counters counters_of_state() override;
   Notes notes() override;
   RunState integers() override { return program_->state(); }
   Reading read(const Asked& asked) override;
   RunState frame(bool forces) override;
+  const Body* saved_body() override;
   bool leads() const override { return program_->leads(); }
   std::pair<bool, bool> agreed(bool stop, bool save) override { return program_->agreed(stop, save); }
   void for_each_slot(const std::function<void(const Particle&)>& see) override {
@@ -44,11 +47,17 @@ class IntegerRun final : public RoundsRun {
 
  private:
   void renew() override;
+  void follow(RealEngine& reference) override;
+  std::vector<Vec3> velocities(const std::vector<Vec3>& force) override;
+  std::vector<std::vector<double>> fields() override;
   // What the process that leads cannot read, no other goes on from.
   template <typename Work>
   auto together(const Work& work);
   ProgramSetting setting_;
   std::unique_ptr<IntegerEngine> program_;
+  std::vector<int64_t> field_numbers_, bond_numbers_;  // of body(), as of State
+  std::vector<Int3> next_velocities_;                  // of body(), while it is read
+  double fastest_ = 0;  // m/s, along an axis, of the states that were looked at
 };
 
 // The scene's body in integers, with the rule's fields as they begin, or as Body::bonds kept them.

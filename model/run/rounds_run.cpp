@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "model/analysis/body_reading.h"
@@ -22,6 +23,20 @@ RealOptions from_step(RealOptions options, uint64_t step) {
   return options;
 }
 
+// Of all particles' values those of some, field by field.
+std::vector<std::vector<double>> rows_of(const std::vector<std::vector<double>>& all, size_t particles,
+                                         std::span<const uint32_t> ids) {
+  std::vector<std::vector<double>> rows;
+  for (const std::vector<double>& values : all) {
+    const size_t numbers = values.size() / particles;
+    std::vector<double>& row = rows.emplace_back();
+    for (const uint32_t id : ids)
+      row.insert(row.end(), values.begin() + static_cast<ptrdiff_t>(numbers * id),
+                 values.begin() + static_cast<ptrdiff_t>(numbers * (id + 1)));
+  }
+  return rows;
+}
+
 }  // namespace
 
 Body completed(const Scene& scene, const Body& start) {
@@ -36,10 +51,18 @@ RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& op
     : scene_(scene),
       step_(step),
       body_(completed(scene, body)),
-      engine_(make_rounds_engine(scene.rule, body_, scene.periodic, from_step(options, step))),
-      options_(std::make_unique<RealOptions>(options)),
-      cell_edge_(cell_edge) {}
+      options_(std::make_unique<RealOptions>(from_step(options, step))),
+      cell_edge_(cell_edge) {
+  if (options.on_demand)
+    start_ = body_;
+  else
+    make_reference(body_);
+}
 RoundsRun::~RoundsRun() = default;
+
+void RoundsRun::make_reference(const Body& start) {
+  engine_ = make_rounds_engine(scene_.rule, start, scene_.periodic, *options_);
+}
 
 void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
   for (; steps > 0; --steps) {
@@ -56,56 +79,62 @@ void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
 void RoundsRun::renew() { engine_->read(body_); }
 
 const Body& RoundsRun::body() {
-  if (stale_) renew();
+  if (stale_) renew(), behind_ = true;
   stale_ = false;
   return body_;
 }
 
+RealEngine& RoundsRun::reference() {
+  body();
+  if (!engine_) {
+    make_reference(std::exchange(start_, {}));
+    behind_ = true;
+  }
+  if (std::exchange(behind_, false)) follow(*engine_);
+  return *engine_;
+}
+
 uint64_t RoundsRun::hash() { throw std::logic_error("states in real numbers have no hash"); }
+
+std::vector<Vec3> RoundsRun::forces() { return reference().forces(); }
+
+std::vector<Vec3> RoundsRun::velocities(const std::vector<Vec3>& force) {
+  const bool half_step = options_->integrator == Integrator::semi_implicit_euler;
+  const double late = half_step ? scene_.rule.dt / 2 : 0;
+  return velocities_at(scene_.rule, body(), late != 0 && force.empty() ? forces() : force, late);
+}
+
+bool RoundsRun::hands_on_fields() const {
+  const RuleProgram* text = scene_.rule.rounds->text();
+  return text != nullptr &&
+         std::ranges::all_of(text->particle, [](const auto& field) { return field.kept || !field.shown; });
+}
+
+std::vector<std::vector<double>> RoundsRun::fields() {
+  if (scene_.rule.rounds->declaration().shown.empty()) return {};
+  return (hands_on_fields() ? reference().kept_terms() : reference().terms())->shown();
+}
 
 RunState RoundsRun::frame(bool forces) {
   const Body& now = body();
-  return RealFrame{step_,
-                   now.x,
-                   now.v,
-                   forces ? engine_->forces() : std::vector<Vec3>(),
-                   now.u,
-                   scene_.rule.rounds->declaration().shown.empty() ? std::vector<std::vector<double>>()
-                                                                   : engine_->terms()->shown()};
+  return RealFrame{step_, now.x, now.v, forces ? this->forces() : std::vector<Vec3>(), now.u, fields()};
 }
 
 Reading RoundsRun::read(const Asked& asked) {
-  const bool half_step = options_->integrator == Integrator::semi_implicit_euler;
-  const double late = half_step ? scene_.rule.dt / 2 : 0;
   const Body& now = body();
-  std::vector<Vec3> force;
-  if (asked.forces || asked.velocities || asked.energies) force = engine_->forces();
-  Reading reading = read_body(scene_.rule, now, force, late, asked);
+  std::vector<Vec3> force, v;
+  if (asked.forces || asked.watch) force = forces();
+  if (asked.velocities || asked.energies) v = velocities(force);
+  Reading reading = read_body(scene_.rule, now, force, v, asked);
   reading.step = step_;
-  if (asked.fields) reading.fields = fields_of(asked.ids);
+  if (asked.fields) reading.fields = rows_of(fields(), now.size(), asked.ids);
   if (!asked.energies) return reading;
-  reading.energies.potential = engine_->terms()->energy();
+  const RoundsTerms& terms = *reference().terms();
+  reading.energies.potential = terms.energy();
   if (asked.watch) asked.watch->see(step_, now, force, reading.energies);
   if (asked.volume > 0)
-    for (size_t i = 0; i < now.size(); ++i) reading.stress += engine_->terms()->stress(i, asked.volume);
+    for (size_t i = 0; i < now.size(); ++i) reading.stress += terms.stress(i, asked.volume);
   return reading;
-}
-
-std::vector<std::vector<double>> RoundsRun::fields_of(std::span<const uint32_t> ids) {
-  // Fields that steps hand on are there without an evaluation of the rounds.
-  const RuleProgram* text = scene_.rule.rounds->text();
-  const bool kept = text && std::ranges::all_of(text->particle,
-                                                [](const auto& field) { return field.kept || !field.shown; });
-  const std::vector<std::vector<double>> all = (kept ? engine_->kept_terms() : engine_->terms())->shown();
-  std::vector<std::vector<double>> fields;
-  for (const std::vector<double>& values : all) {
-    const size_t numbers = values.size() / body_.size();
-    std::vector<double>& of = fields.emplace_back();
-    for (const uint32_t id : ids)
-      of.insert(of.end(), values.begin() + static_cast<ptrdiff_t>(numbers * id),
-                values.begin() + static_cast<ptrdiff_t>(numbers * (id + 1)));
-  }
-  return fields;
 }
 
 Momentum RoundsRun::momentum() {
@@ -115,13 +144,14 @@ Momentum RoundsRun::momentum() {
   return {{}, sum};
 }
 
-double RoundsRun::largest_speed() { return engine_->largest_speed() * scene_.rule.dt / cell_edge_; }
+double RoundsRun::largest_speed() { return reference().largest_speed() * scene_.rule.dt / cell_edge_; }
 
 Counters RoundsRun::counters() { return {{"threads", options_->threads}}; }
 
 Counters RoundsRun::counters_of_state() {
-  body();
-  return bond_counters(scene_.rule, *engine_->terms(), body_.size());
+  // Bonds of the moment are counted by the rounds; what became of those that last is handed on.
+  const bool last = has_reference_bonds(scene_.rule);
+  return bond_counters(scene_.rule, last ? *reference().kept_terms() : *reference().terms(), body_.size());
 }
 
 Notes RoundsRun::notes() {
@@ -132,8 +162,7 @@ Notes RoundsRun::notes() {
 }
 
 const Body* RoundsRun::saved_body() {
-  body();
-  keep_bonds(body_, *engine_->kept_terms());
+  keep_bonds(body_, *reference().kept_terms());
   return &body_;
 }
 
@@ -144,22 +173,21 @@ bool RoundsRun::breaks() const {
   return rule.declaration().bonds == BondRange::reference && std::isfinite(rule.bond_reach());
 }
 
-std::vector<double> RoundsRun::damage() const {
+std::vector<double> RoundsRun::damage() {
+  const RoundsTerms& terms = *reference().kept_terms();
   std::vector<double> damage(body_.size());
-  for (size_t i = 0; i < damage.size(); ++i) damage[i] = engine_->terms()->damage(i);
+  for (size_t i = 0; i < damage.size(); ++i) damage[i] = terms.damage(i);
   return damage;
 }
 
 std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
-  std::vector<std::pair<std::string, std::vector<double>>> fields;
+  std::vector<std::pair<std::string, std::vector<double>>> shown;
   const std::vector<RuleField>& names = scene_.rule.rounds->declaration().shown;
-  std::vector<std::vector<double>> values;
-  body();
-  if (!names.empty()) values = engine_->terms()->shown();
-  for (size_t k = 0; k < names.size(); ++k) fields.emplace_back(names[k].name, std::move(values[k]));
+  std::vector<std::vector<double>> values = fields();
+  for (size_t k = 0; k < names.size(); ++k) shown.emplace_back(names[k].name, std::move(values[k]));
   if (breaks() && std::ranges::none_of(names, [](const RuleField& f) { return f.name == "damage"; }))
-    fields.emplace_back("damage", damage());
-  return fields;
+    shown.emplace_back("damage", damage());
+  return shown;
 }
 
 EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,26 +39,42 @@ class RoundsRun : public Engine {
 
   // Whether the rule's bonds can break; of each particle's the share that did, as the last step left it.
   bool breaks() const;
-  std::vector<double> damage() const;
+  std::vector<double> damage();
   // What the rule shows of its particles, by name: [particle x its numbers]. With "damage" where bonds break.
   std::vector<std::pair<std::string, std::vector<double>>> shown();
 
  protected:
   const Body& body();
-  // Fills body_ from the engine's state, where that has gone on.
+  // The reference engine at body(). Of options `on_demand` another engine makes the steps, and this one is
+  // made when something is first asked for that the state does not tell.
+  RealEngine& reference();
+  // Fills body_ from the state, where that has gone on.
   virtual void renew();
-  // As Reading::fields.
-  std::vector<std::vector<double>> fields_of(std::span<const uint32_t> ids);
+  // The reference becomes the state of body(), where another engine makes the steps.
+  virtual void follow(RealEngine&) {}
+
+  // Of the state, by id. N, on each particle, without gravity and controllers.
+  virtual std::vector<Vec3> forces();
+  // m/s, at the time of the positions. `force`: forces(), or empty where nobody asked for them.
+  virtual std::vector<Vec3> velocities(const std::vector<Vec3>& force);
+  // As RoundsTerms::shown.
+  virtual std::vector<std::vector<double>> fields();
+  // Whether steps hand on all that fields() shows: the state has it, and no round need be run.
+  bool hands_on_fields() const;
 
   const Scene& scene_;
   uint64_t step_;
   bool stale_ = false;
   Body body_;
-  std::unique_ptr<RealEngine> engine_;
 
  private:
+  void make_reference(const Body& start);
+
   std::unique_ptr<RealOptions> options_;
   double cell_edge_;
+  std::unique_ptr<RealEngine> engine_;
+  Body start_;           // on demand: what the reference begins with, until it is made
+  bool behind_ = false;  // the reference is not at body()
 };
 
 // As engines of rounds begin: with bonds, and displacements from anchors where some type is held by force.

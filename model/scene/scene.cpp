@@ -11,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/config/file_kind.h"
 #include "model/contract/law.h"
+#include "model/program/step_limit.h"
 #include "model/rules/no_rest.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/readings.h"
@@ -162,14 +163,22 @@ void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
   const auto usual = run.find("dt"), own = stage ? stage->find("dt") : std::nullopt;
   const auto dt = own ? own : usual;
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
-  const TimeLimit& limit = automatic ? limits.automatic : limits.given;
+  TimeLimit limit = automatic ? limits.automatic : limits.given;
+  std::string unknown;
+  if (const RoundsRule* rounds = scene.rule.rounds.get();
+      automatic && limit.known() == 0 && rounds != nullptr && rounds->text() != nullptr) {
+    const StepLimit found = step_limit(*rounds->text(), scene.rule, scene.body, scene.periodic);
+    limit.meet(found.dt, found.of);
+    unknown = ": " + found.unknown;
+  }
   scene.dt_limit = limit.known();
   scene.dt_limit_of = limit.of;
   const auto safety = run.find("dt_safety");
   if (automatic) {
     scene.dt_safety =
         safety ? safety->number(quantity::number, {.low = 0, .high = 1, .low_open = true}) : 0.2;
-    if (scene.dt_limit == 0) (dt ? *dt : run).fail("no stability limit is known for this scene", "give 'dt'");
+    if (scene.dt_limit == 0)
+      (dt ? *dt : run).fail("no stability limit is known for this scene" + unknown, "give 'dt'");
     scene.rule.dt = scene.dt_safety * scene.dt_limit;
   } else {
     if (safety && !own) safety->fail("'dt_safety' serves dt = \"auto\" only");

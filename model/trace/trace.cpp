@@ -126,6 +126,11 @@ class FrameRows {
   int64_t rows_ = 0;
 };
 
+void write_bonds(const Writer& out, const Handle& group, const std::vector<uint64_t>& bonds) {
+  out.array(group, "bonds", {bonds.size()}, bonds, "",
+            "what the bonds of the last body keep: docs/reference/trace.md");
+}
+
 class BodyRows {
  public:
   BodyRows(const Writer& out, const RealFrame& first, const TraceHead* head)
@@ -167,9 +172,7 @@ class BodyRows {
   }
   uint64_t pending() const { return 4 * x_.chunk_bytes() + (shown_ ? shown_->chunk_bytes() : 0); }
   void finish(const std::optional<std::vector<uint64_t>>& bonds) {
-    if (bonds)
-      out_.array(group_, "bonds", {bonds->size()}, *bonds, "",
-                 "what the bonds of the last body keep: docs/reference/trace.md");
+    if (bonds) write_bonds(out_, group_, *bonds);
     x_.finish(), v_.finish();
     if (force_) force_->finish();
     if (u_) u_->finish();
@@ -236,6 +239,7 @@ void read_frames(const Reader& in, const std::function<void(State)>& see) {
 void read_bodies(const Reader& in, const std::function<void(RealFrame)>& see) {
   if (!in.has(in.root(), "bodies")) return;
   const Handle group = in.group(in.root(), "bodies");
+  if (!in.has(group, "x") && in.has(group, "bonds")) return;  // the frames went elsewhere
   const auto step = in.array<uint64_t>(group, "step");
   const hsize_t rows = in.length(group, "x");
   in.same_length(!step.empty() && rows % step.size() == 0, "the bodies' fields");
@@ -491,7 +495,10 @@ void TraceWriter::finish(const Trace& trace) {
     if (!impl_->frames) impl_->frames.emplace(out, 0, nullptr);
     impl_->frames->finish();
     impl_->frames.reset();
-    if (impl_->bodies) impl_->bodies->finish(trace.bonds);
+    if (impl_->bodies)
+      impl_->bodies->finish(trace.bonds);
+    else if (trace.bonds)  // the frames went elsewhere
+      write_bonds(out, out.group(out.root(), "bodies"), *trace.bonds);
     impl_->bodies.reset();
     write_curves(out, trace.curves);
     write_cycles(out, trace);

@@ -53,6 +53,7 @@ class Job {
     body.bodies.push_back({0, start.x, start.v, {}, {}});
     write_trace(path("start.h5"), body);
     RemoteRun run{program(), path("scene.toml"), path("arch.toml"), path("trace.h5")};
+    run.scene_path = c.scene.path;  // files that it names lie there
     run.own = {"--start", path("start.h5"), "--precision", precision_of(c.settings.arithmetic)};
     run.own.insert(run.own.end(), more.begin(), more.end());
     run.unpacked = run.quiet = true;
@@ -60,6 +61,7 @@ class Job {
     run.request.frames = request.keep;
     run.request.energies = request.energies;
     run.request.forces = request.forces;
+    run.request.integers = c.settings.arithmetic == Arithmetic::fixed;
     run.request.hash_every = 0;  // work that nobody reads here
     remote_.emplace(std::move(run));
   }

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include "hw/engine/engines.h"
+#include "hw/engine/scene_engine.h"
 #include "model/base/error.h"
 #include "model/config/config.h"
-#include "model/rules/rounds_rule.h"
 
 namespace cuboct::study {
 Base read_base(const std::string& scene_path, const std::string& arch_path) {
@@ -56,11 +56,11 @@ Case resolve(const Base& base, const Settings& settings) {
         fmt::format("{} knows the integrator 'euler' only", fixed ? "fixed arithmetic" : "the gpu engine"));
   Case c{settings, {}, {}, with_changes(base.scene_text, base.scene_path, settings.scene), {}};
   c.scene = parse_scene(c.scene_text, base.scene_path);
-  if (on_gpu(settings)) refuse_rounds(c.scene.rule, "a study on a GPU");
   const std::string arch_path = base.arch_path.empty() ? "(default arch)" : base.arch_path;
   const std::string arch_text = base.arch_text.empty() ? "name = \"default\"\n" : base.arch_text;
   c.arch_text = with_changes(arch_text, arch_path, settings.arch);
   c.arch = parse_arch(c.arch_text, arch_path);
+  if (on_gpu(settings)) check_runs(c.scene, c.arch, settings.engine);
   return c;
 }
 

@@ -75,6 +75,15 @@ void compare(const Case& c, const emu::LatticeOptions& options, Count& count) {
       }
       count.kicks += kicks.size();
     }
+    if (plan.program && s % 3 == 0) {
+      const std::vector<Int3> ahead = engine.next_velocities();
+      ASSERT_TRUE(!first || ahead == golden.next_velocities()) << "step " << s;
+      count.ahead += ahead.size();
+      // Within the step, too, the state is that of before.
+      const State here = engine.state();
+      ASSERT_TRUE(!first || here == before) << first_difference(plan.lattice, before, here);
+      ASSERT_EQ(engine.hash(), hash_of(plan.lattice, before));
+    }
     try {
       golden.step();
     } catch (const RunError& e) {

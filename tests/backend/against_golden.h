@@ -18,6 +18,7 @@ struct Count {
   uint64_t updates = 0, moves = 0, faults = 0, vectors = 0;
   uint64_t resumed = 0;  // steps with cells at rest after one without
   uint64_t kicks = 0;    // sums that the engine gave before a step
+  uint64_t ahead = 0;    // velocities of a program's next step
   emu::LatticeCounters lists;
 };
 

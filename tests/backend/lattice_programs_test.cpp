@@ -55,6 +55,7 @@ void compare_random(emu::RuleCode code) {
   }
   EXPECT_LT(wide.vectors, 50u);
   EXPECT_GT(count.updates, 20000u);
+  EXPECT_GT(count.ahead, count.updates / 4);
   EXPECT_GT(count.moves, 100u);
   EXPECT_GT(count.lists.quiet_node_steps, 0u);
 }

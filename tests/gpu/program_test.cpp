@@ -125,6 +125,15 @@ TEST_F(GpuProgram, MeasuresPressureAsGoldenDoes) {
   }
 }
 
+// Its frames come one by one, and what fields and bonds keep comes behind them.
+TEST_F(GpuProgram, LeavesARuleThatRemembersToGoOn) {
+  const std::string heat = "scenes/rules/heat.toml";
+  run("half", {heat, "--steps", "3", "--engine", "gpu", "--rule-code", "interpreted"});
+  const Trace rest = run("rest", {heat, "--steps", "2", "--engine", "golden", "--from", bench_.path("half")});
+  const Trace whole = run("whole", {heat, "--steps", "5", "--engine", "golden"});
+  EXPECT_EQ(rest.state_hash.back(), whole.state_hash.back());
+}
+
 TEST_F(GpuProgram, TellsAFaultAsGoldenDoes) {
   const Trace gpu = run("gpu", {"scenes/failures/velocity.toml", "--engine", "gpu", "--quiet"}, 1);
   const Answer told = answer_;

@@ -105,6 +105,8 @@ inline void compare_rounds(Case c, uint64_t seed, Compared& compared, const gpu:
     const auto mismatch = compare(there, here);
     ASSERT_FALSE(mismatch) << mismatch->text("golden", "gpu", plan.lattice);
     ASSERT_EQ(engine->hash(), hash_of(plan.lattice, there));
+    ASSERT_EQ(engine->next_velocities(), golden.next_velocities());
+    ASSERT_EQ(engine->hash(), hash_of(plan.lattice, there));
   }
   const State last = engine->state();
   const Owners owners(plan, c.setup.initial, static_cast<int>(options.devices.size()));

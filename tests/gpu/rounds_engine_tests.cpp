@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "emu/gpu/rounds/rounds_engine.h"
 #include "hw/engine/engine_kind.h"
@@ -11,6 +12,7 @@
 #include "tests/gpu/rounds_beside_golden.h"
 #include "tests/gpu/torn_glass.h"
 #include "tests/support/cases.h"
+#include "tests/support/counted_terms.h"
 
 namespace cuboct::test {
 namespace {
@@ -54,21 +56,32 @@ TEST(GpuRounds, FaultsAriseAsInGolden) {
 TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   const std::string rules = CUBOCT_SOURCE_DIR "/scenes/rules/";
   using Steps = std::pair<Scene, uint64_t>;
-  for (const auto& [scene, steps] :
+  for (auto [scene, steps] :
        {Steps(read_scene(rules + "heat.toml"), 90), Steps(torn_glass(rules), 90),
         Steps(read_scene(rules + "langevin.toml"), 20), Steps(read_scene(rules + "dpd.toml"), 30)}) {
     const Plan plan = program_plan_of(scene, Arch());
+    const auto terms = count_terms(scene);
     const auto golden = integer_run(scene, plan, nullptr);
+    std::vector<uint32_t> ids(scene.body.size());
+    std::iota(ids.begin(), ids.end(), 0);
+    const Asked asked{.ids = ids, .velocities = true};
+    const Reading first = golden->read(asked);
     std::vector<uint64_t> expected{golden->hash()};
     golden->advance(steps, &expected);
+    const Reading last = golden->read(asked);
+    EXPECT_EQ(terms->made(), 0);
     for (const bool compiled : {false, true}) {
       const gpu::CompileRounds compile = compiled ? host_compiler("rule") : gpu::CompileRounds();
       const auto device = integer_run(scene, plan, nullptr, [&](const State& state) {
         return gpu::make_rounds_engine(plan, state, {}, compile);
       });
+      const int made = terms->made();
+      EXPECT_EQ(device->read(asked).v, first.v);
       std::vector<uint64_t> found{device->hash()};
       device->advance(steps, &found);
       EXPECT_EQ(found, expected);
+      EXPECT_EQ(device->read(asked).v, last.v);
+      EXPECT_EQ(terms->made(), made);
       EXPECT_EQ(note(device->notes(), "kernels"), compiled ? "compiled for host" : "interpreted");
       if (plan.program->rows == nullptr) continue;
       const std::vector<double> damage = device->damage();

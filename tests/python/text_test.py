@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Rules that are text, stepped in integers: golden, lattice, and engines in programs of their own."""
+import contextlib
 import json
 import os
 import shutil
@@ -157,8 +158,35 @@ class Changes(unittest.TestCase):
         simulation.step(5)
 
 
+@contextlib.contextmanager
+def gpu_on_the_host(test):
+    """The gpu engine's program with loops for kernels."""
+    if not os.path.exists(HOST):
+        test.skipTest("no kernels on the host")
+    with tempfile.TemporaryDirectory() as folder:
+        for program, name in ((HOST, "cuboct-gpu"), (os.path.join(PROGRAMS, "cuboct-read-trace"), "cuboct-read-trace")):
+            os.symlink(os.path.abspath(program), os.path.join(folder, name))
+        cuboct.set_program_directory(folder)
+        try:
+            yield
+        finally:
+            cuboct.set_program_directory(PROGRAMS)
+
+
 class Programs(unittest.TestCase):
-    """Whole runs; none is stepped."""
+    def steps(self, scene, engine, steps, **options):
+        """In parts of the program, and as golden takes them here."""
+        here = cuboct.Simulation(scene, "golden", probe_every=3)
+        there = cuboct.Simulation(scene, engine, probe_every=3, rule_code="interpreted", **options)
+        for part in steps:
+            here.step(part)
+            there.step(part)
+            alike(self, there, here)
+            self.assertEqual(there.steps, here.steps)
+        self.assertEqual(set(there.curves), set(here.curves))
+        for key in here.curves:
+            self.assertEqual(there.curves[key].tolist(), here.curves[key].tolist(), key)
+        return there
 
     def test_ranks(self):
         if shutil.which("mpirun") is None:
@@ -166,30 +194,66 @@ class Programs(unittest.TestCase):
         scene = text("langevin")
         whole = cuboct.run(scene, "lattice", steps=5, ranks=2, rule_code="interpreted")
         self.assertEqual(whole.hash, cuboct.run(scene, "golden", steps=5).hash)
+        self.steps(scene, "lattice", (2, 3), ranks=2)
 
     def test_gpu(self):
-        if not os.path.exists(HOST):
-            self.skipTest("no kernels on the host")
+        with gpu_on_the_host(self):
+            here = cuboct.run(text("heat"), "golden", steps=5)
+            there = cuboct.run(text("heat"), "gpu", steps=5, rule_code="interpreted")
+            alike(self, there, here)
+
+    def test_gpu_is_stepped(self):
+        with gpu_on_the_host(self):
+            for name in ("heat", "langevin", "copper"):
+                simulation = self.steps(text(name), "gpu", (2, 4, 1))
+                if name == "heat":
+                    self.assertGreater(simulation.fields["T"].max(), 300)
+            self.steps(pulled(), "gpu", (3, 4))
+            with self.assertRaises(cuboct.InputError) as caught:
+                simulation.set_gravity([0, 0, 1])
+            self.assertIn("is a program that reads the scene", caught.exception.message)
+
+    def test_damage(self):
+        torn = text("glass")
+        for constraint, speed in zip(torn["constraint"], (400, -400)):
+            constraint["velocity"] = f"[0, {speed}, 0] m/s"
+        del torn["rule"]["start"]["hard"]
+        with gpu_on_the_host(self):
+            simulation = self.steps(torn, "gpu", (4, 3))
+            whole = cuboct.run(torn, "gpu", steps=7, rule_code="interpreted")
+        self.assertGreater(simulation.fields["damage"].max(), 0.2)
+        self.assertEqual(whole.fields["damage"].tolist(), simulation.fields["damage"].tolist())
+
+    def test_a_fault_is_that_of_the_run(self):
+        scene = text("langevin", dt=0.02, steps=40)
+        scene["velocity"][0]["thermal_energy"] = 400.0
+        with self.assertRaises(cuboct.RunError) as here:
+            cuboct.Simulation(scene, "golden", probe_every=0).run()
+        with gpu_on_the_host(self), self.assertRaises(cuboct.RunError) as there:
+            cuboct.Simulation(scene, "gpu", probe_every=0, rule_code="interpreted").run()
+        self.assertEqual(str(there.exception), str(here.exception))
+
+    def test_where_there_is_no_gpu(self):
         with tempfile.TemporaryDirectory() as folder:
-            os.symlink(os.path.abspath(HOST), os.path.join(folder, "cuboct-gpu"))
-            os.symlink(os.path.abspath(os.path.join(PROGRAMS, "cuboct-read-trace")), os.path.join(folder, "cuboct-read-trace"))
             cuboct.set_program_directory(folder)
             try:
-                here = cuboct.run(text("heat"), "golden", steps=5)
-                there = cuboct.run(text("heat"), "gpu", steps=5, rule_code="interpreted")
-                alike(self, there, here)
+                simulation = cuboct.Simulation(text("heat", steps=10), "gpu")
+                with self.assertRaises(cuboct.InputError) as caught:
+                    simulation.step()
             finally:
                 cuboct.set_program_directory(PROGRAMS)
+        self.assertEqual(caught.exception.message, "the gpu engine is not built: no program cuboct-gpu beside cuboct")
+        with self.assertRaises(cuboct.InputError) as caught:
+            cuboct.Simulation(text("heat", steps=10), "gpu", precision="float")
+        self.assertEqual(caught.exception.message, "the gpu engine in real numbers cannot be stepped")
 
-    def test_none_is_stepped(self):
-        for options, message in (
-            ({"engine": "gpu"}, "a rule of text is not stepped in the gpu engine"),
-            ({"engine": "lattice", "ranks": 2}, "a rule of text is not stepped in the lattice engine of several processes"),
-        ):
-            with self.assertRaises(cuboct.InputError) as caught:
-                cuboct.Simulation(text("heat", steps=10), **options)
-            self.assertEqual(caught.exception.message, message)
-            self.assertEqual(caught.exception.key, "rule.file")
+    def test_a_scene_of_its_own_names_files_beside_it(self):
+        """A changed scene is a copy elsewhere: its rule file lies where the scene was."""
+        scene = text("heat")
+        scene["rule"]["parameters"] = {"conductivity": "100 W/(m*K)"}
+        with gpu_on_the_host(self):
+            there = cuboct.run(scene, "gpu", steps=3, rule_code="interpreted")
+        alike(self, there, cuboct.run(scene, "golden", steps=3))
 
 
 class Refusals(unittest.TestCase):

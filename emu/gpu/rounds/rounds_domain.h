@@ -81,6 +81,19 @@ class RoundsDomain {
     return sorted;
   }
 
+  // By id.
+  std::vector<Int3> velocities() const {
+    std::vector<Int3> by_id(count_);
+    for (const auto& slab : slabs) {
+      const std::vector<uint32_t> ids = slab->copies[places.who].id.host(slab->stream, 0, slab->own);
+      for (size_t a = 0; a < 3; ++a) {
+        const std::vector<int64_t> v = slab->copies[places.at].v[a].host(slab->stream, 0, slab->own);
+        for (size_t k = 0; k < v.size(); ++k) by_id[ids[k]][a] = v[k];
+      }
+    }
+    return by_id;
+  }
+
   // Lists serve from now on. `age`: steps that those before have served.
   void make_lists(uint64_t age) {
     if (rows_ == nullptr) skin_.aged(age);

@@ -72,6 +72,22 @@ class RoundsEngine final : public IntegerEngine {
 
   State state() const override { return domain_.state(step_); }
   uint64_t hash() const override { return hash_of(plan_.lattice, state()); }
+  std::vector<Int3> next_velocities() override {
+    // A list that has served may leave a doubt that a new one does not.
+    do {
+      if (!listed_) make_lists();
+      if (has_kernels_ && !proven_) prove();
+      const RoundsPlaces here = domain_.places;
+      const bool done = run(1, nullptr, proven_) == 1;
+      std::vector<Int3> v;
+      if (done) v = domain_.velocities();
+      domain_.places = here, near_stale_ = true;
+      if (done) return v;
+      listed_ = age_ == 0;
+    } while (!listed_);
+    return GoldenIntegers(program_, plan_.lattice, plan_.arch.capacity, state(), plan_.program->rows)
+        .next_velocities();
+  }
   // Golden's slots are not kept: by id.
   void for_each_slot(const std::function<void(const Particle&)>& see) const override {
     for (const Particle& particle : state().particles) see(particle);

@@ -102,6 +102,19 @@ std::vector<int64_t> Rounds::give_bonds() const {
   return bonds;
 }
 
+std::vector<Sums> Rounds::copy_bonds() const {
+  std::vector<Sums> copy;
+  for (const BlockRounds& block : blocks_) {
+    copy.emplace_back();
+    for (const auto& numbers : block.bonds().numbers) copy.back().push_back(numbers.copy());
+  }
+  return copy;
+}
+
+void Rounds::swap_bonds(std::vector<Sums>& with) {
+  for (size_t b = 0; b < blocks_.size(); ++b) blocks_[b].bonds().numbers.swap(with[b]);
+}
+
 bool Rounds::has_kept_code(const std::string& simd) const { return is_kept(program_, once_, simd); }
 
 void Rounds::compile(const std::string& simd, const std::string& directory) {

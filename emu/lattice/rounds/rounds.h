@@ -28,6 +28,9 @@ class Rounds {
   // What the rounds keep of bonds, in the order of State::bonds.
   void take_bonds(const std::vector<int64_t>& bonds) { bonds_ = bonds; }
   std::vector<int64_t> give_bonds() const;
+  // The same as the blocks hold them.
+  std::vector<Sums> copy_bonds() const;
+  void swap_bonds(std::vector<Sums>& with);
 
   // Whether the code was compiled with the program: then nothing is compiled here.
   bool has_kept_code(const std::string& simd) const;

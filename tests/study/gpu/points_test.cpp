@@ -11,6 +11,7 @@
 #include "study/sweep/measure_errors.h"
 #include "study/sweep/measure_speed.h"
 #include "tests/study/small_study.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct::study {
 namespace {
@@ -22,13 +23,13 @@ constexpr const char* kFalling =
     "[[figure]]\nkind = \"mean\"\ncurve = \"energy.potential\"\n";
 
 struct Measured {
-  explicit Measured(const std::string& text) {
-    const test::SmallStudy files;
-    study = read_study(files.study(text));
+  explicit Measured(const std::string& text, const std::string& scene = "block.toml") {
+    study = read_study(files.study(text, "study.toml", scene));
     truth = make_truth(study, 1);
     for (const Settings& settings : study.points)
       outcomes.push_back(measure_errors(study, truth, truth, settings));
   }
+  test::SmallStudy files;
   Study study;
   Truth truth;
   std::vector<Outcome> outcomes;
@@ -127,6 +128,42 @@ TEST(GpuPoints, SpeedIsOfStepsOverTheStudysSeconds) {
 TEST(GpuPoints, ThePlanIsThatOfTheStudy) {
   const Measured m("[truth]\nrungs = 2\n[[sweep]]\nengine = \"gpu\"\ndt_safety = [0.333, 0.1]\n");
   for (const Outcome& outcome : m.outcomes) EXPECT_EQ(outcome.status, Status::done) << outcome.why;
+}
+
+// A rule of text is a file beside the scene, of which the program reads a changed copy.
+TEST(GpuPoints, RulesOfTextAreThoseOfTheOtherEngines) {
+  const Measured m(
+      "[truth]\nrungs = 3\n[[figure]]\nkind = \"final\"\ncurve = \"left.T\"\n"
+      "[[sweep]]\nengine = [\"lattice\", \"gpu\"]\ndt_safety = [0.4, 0.1]\n"
+      "[[sweep]]\narithmetic = \"float64\"\n"
+      "[[sweep]]\nengine = \"gpu\"\narithmetic = [\"float64\", \"float32\"]\n",
+      "warm.toml");
+  ASSERT_EQ(m.outcomes.size(), 7U);
+  for (const Outcome& outcome : m.outcomes) EXPECT_EQ(outcome.status, Status::done) << outcome.why;
+  for (size_t k = 0; k < 2; ++k) {
+    const Outcome &lattice = m.outcomes[k], &gpu = m.outcomes[k + 2];
+    EXPECT_GT(gpu.errors.trajectory, 0);
+    EXPECT_EQ(gpu.errors.trajectory, lattice.errors.trajectory);
+    EXPECT_EQ(gpu.errors.values, lattice.errors.values);
+    EXPECT_TRUE(std::isnan(gpu.errors.force_max));
+  }
+  const Outcome &reference = m.outcomes[4], &in_doubles = m.outcomes[5], &in_floats = m.outcomes[6];
+  EXPECT_NEAR(in_doubles.errors.trajectory / reference.errors.trajectory, 1, 1e-6);
+  EXPECT_NEAR(in_doubles.errors.values[0] / reference.errors.values[0], 1, 1e-12);
+  EXPECT_LT(in_doubles.errors.force_max, 1e-9);
+  EXPECT_GT(in_floats.errors.force_median, 1e-9);
+  EXPECT_LT(in_floats.errors.force_median, 1e-3);
+  EXPECT_GT(measure_speed(m.study, m.study.points[2]).particle_steps, 0);
+  EXPECT_GT(measure_speed(m.study, m.study.points[5]).particle_steps, 0);
+}
+
+// Those that are no text are the reference's alone.
+TEST(GpuPoints, OtherRulesOfRoundsAreRefused) {
+  Settings settings;
+  settings.engine = "gpu";
+  const Base base = read_base(CUBOCT_SOURCE_DIR "/scenes/cracked_glass.toml", "");
+  const std::string error = refused_with([&] { resolve(base, settings); });
+  EXPECT_NE(error.find("and the gpu engine knows the pair law alone"), std::string::npos) << error;
 }
 
 TEST(GpuPoints, TheProgramTellsItsDevice) {
