@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "hw/engine/scene_engine.h"
 #include "hw/program/options.h"
 #include "model/run/start.h"
 
@@ -48,9 +49,9 @@ Loaded load(const Input& input) {
   return loaded;
 }
 
-Loaded load_plan(const Input& input) {
+Loaded load_plan(const Input& input, const std::string& engine, bool real) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
-  loaded.setup.plan = plan_of(loaded.scene, read_arch(input.arch));
+  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch), engine, real);
   return loaded;
 }
 

@@ -58,8 +58,9 @@ struct Loaded {
   Setup setup;
 };
 Loaded load(const Input& input);
-// The same without `setup.initial`: for engines that take their particles one by one, and scenes of which a
-// second copy would not fit.
-Loaded load_plan(const Input& input);
+// The same without `setup.initial`, for engines that take their particles one by one, and scenes of which a
+// second copy would not fit; with the plan that `engine` needs, or what stands for one (scene_plan_of, as is
+// `real`). None is named: the engine that the scene asks for.
+Loaded load_plan(const Input& input, const std::string& engine = "", bool real = false);
 
 }  // namespace cuboct

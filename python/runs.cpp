@@ -82,8 +82,7 @@ void add_damage(const Scene& scene, const Trace& trace, Kept& last) {
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
   if (!given.engine.empty()) given.options.check({engine_row(given.engine).name}, {});
-  const Loaded loaded =
-      load_plan(sources, false, given.engine, !given.engine.empty() && given.options.is_real(given.engine));
+  const Loaded loaded = load_plan(sources, false, given.engine, given.options.is_real(given.engine));
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const RunAsked asked = for_scene(given, scene);

@@ -76,7 +76,7 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
                        std::optional<uint64_t> probe_every, bool anyway)
     : engine_name_(engine), options_(options), sources_(sources) {
   if (!engine.empty()) options.check({engine_row(engine).name}, {});
-  Loaded loaded = load_plan(sources, false, engine, !engine.empty() && options.is_real(engine));
+  Loaded loaded = load_plan(sources, false, engine, options.is_real(engine));
   if (engine.empty()) engine_name_ = engine_for(loaded.scene);
   options.check({engine_name_}, {});
   check_runs(loaded.scene, loaded.setup.plan.arch, engine_name_);

@@ -10,7 +10,7 @@
 #include "cli/answer.h"
 #include "cli/programs.h"
 #include "cli/run/estimate.h"
-#include "cli/run/load_any.h"
+#include "cli/run/plan_text.h"
 #include "cli/run/rule_integers.h"
 #include "cli/run/stages.h"
 #include "cli/run/summary.h"
@@ -305,7 +305,7 @@ void add_check(Command& app, int&) {
   options->answer.add_to(command);
   command.callback([options] {
     const Items stages = stages_in(options->input);
-    const Loaded loaded = options->machine ? load(options->input) : load_any(options->input, "");
+    const Loaded loaded = options->machine ? load(options->input) : load_plan(options->input);
     check_bonds(loaded.scene);
     Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);

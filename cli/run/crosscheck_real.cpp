@@ -9,7 +9,6 @@
 #include <memory>
 
 #include "cli/run/crosscheck_text.h"
-#include "cli/run/load_any.h"
 #include "cli/run/told.h"
 #include "hw/engine/scene_engine.h"
 #include "model/analysis/real_bounds.h"
@@ -107,7 +106,7 @@ Comparison text_comparison(const Scene& scene, bool floats, uint64_t last) {
 
 int crosscheck_real(const Input& input, const EngineOptions& choice, std::optional<uint64_t> steps,
                     const std::string& out, const Answer& answer) {
-  const Loaded loaded = load_any(input, "gpu", true);
+  const Loaded loaded = load_plan(input, "gpu", true);
   const Scene& scene = loaded.scene;
   check_runs(scene, loaded.setup.plan.arch, "gpu");
   catch_interrupts();

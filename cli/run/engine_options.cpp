@@ -143,6 +143,7 @@ void EngineOptions::check(const Plan& plan) const {
 }
 
 bool EngineOptions::is_real(const std::string& engine) const {
+  if (engine.empty()) return false;
   const EngineRow& row = engine_row(engine);
   return !row.bits || (row.real && !precision.empty() && precision != "fixed");
 }

@@ -39,7 +39,7 @@ struct EngineOptions {
   // The same where an option is of other scenes than the plan's.
   void check(const Plan& plan) const;
 
-  // Whether the engine then computes in real numbers.
+  // Whether the engine then computes in real numbers; none is named: no.
   bool is_real(const std::string& engine) const;
   RealOptions real_options() const;  // of the reference
   bool keeps_checkpoints() const { return resume || !checkpoint_every.empty(); }

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "cli/run/load_any.h"
+#include "cli/run/plan_text.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error_parts.h"
 #include "model/base/input_file.h"

@@ -10,7 +10,6 @@
 #include "cli/answer.h"
 #include "cli/programs.h"
 #include "cli/run/check.h"
-#include "cli/run/load_any.h"
 #include "cli/run/report.h"
 #include "cli/run/report_pictures.h"
 #include "cli/run/summary.h"
@@ -360,7 +359,7 @@ void write_report(const std::string& directory, const std::string& out) {
   input.stage = record.stage;
   input.from = record.from;
   const Trace trace = guarded_trace(directory + "/trace.h5");
-  const Loaded loaded = load_any(input, record.engine, trace.state_hash.empty());
+  const Loaded loaded = load_plan(input, record.engine, trace.state_hash.empty());
   const Plan& plan = loaded.setup.plan;
   if (trace.plan_hash != plan.hash)
     throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",

@@ -12,7 +12,6 @@
 #include "cli/programs.h"
 #include "cli/run/engine_run.h"
 #include "cli/run/estimate.h"
-#include "cli/run/load_any.h"
 #include "cli/run/recorder.h"
 #include "cli/run/stages.h"
 #include "cli/run/summary.h"
@@ -136,8 +135,7 @@ RunOptions for_scene(RunOptions options, const Scene& scene) {
 }
 
 Ended run_once(const RunOptions& given) {
-  const Loaded loaded =
-      load_any(given.input, given.engine, !given.engine.empty() && given.engines.is_real(given.engine));
+  const Loaded loaded = load_plan(given.input, given.engine, given.engines.is_real(given.engine));
   const RunOptions options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
   catch_interrupts();

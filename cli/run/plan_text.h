@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes for the commands that need no machine: those of pairs with their plan, and those whose rule has
-// several rounds, for which none is built.
+// What a scene becomes, for people: the plan of its machine, or its rule where none is built.
 #pragma once
 
 #include <string>
@@ -9,11 +8,6 @@
 #include "cli/items.h"
 
 namespace cuboct {
-
-// As load_plan, or with what stands for a plan (hw/plan/real_plan.h): of rules of several rounds, and of
-// rules of pairs that no integers hold, where `engine` always computes in doubles. None is named: the one
-// that the scene asks for. `real` as of scene_plan_of.
-Loaded load_any(const Input& input, const std::string& engine = "", bool real = false);
 
 // Whether it is a plan, and not what stands for one.
 inline bool has_machine(const Plan& plan) { return plan.lattice.size() > 0; }

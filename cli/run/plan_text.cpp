@@ -1,19 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "cli/run/load_any.h"
+#include "cli/run/plan_text.h"
 
-#include <fmt/format.h>
-
-#include "hw/engine/scene_engine.h"
 #include "model/rules/rounds_rule.h"
-#include "model/run/start.h"
 
 namespace cuboct {
-
-Loaded load_any(const Input& input, const std::string& engine, bool real) {
-  Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
-  loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch), engine, real);
-  return loaded;
-}
 
 void add_rounds(Items& items, const Scene& scene) {
   const RoundsRule* rule = scene.rule.rounds.get();
