@@ -85,12 +85,9 @@ CodeNumbers numbers_of(const RoundCode& code) {
   return code.library != nullptr ? code.library->numbers() : CodeNumbers{};
 }
 
-// Arrays of that size, without a sum.
-void empty(Sums& sums, size_t count, size_t size) {
-  if (sums.size() == count && (count == 0 || sums[0].size() == size)) {
-    for (auto& sum : sums) std::fill_n(sum.data(), size, kMagic);
-    return;
-  }
+// At least so many arrays of that size.
+void make(Sums& sums, size_t count, size_t size) {
+  if (sums.size() >= count && (count == 0 || sums[0].size() == size)) return;
   sums.clear();
   for (size_t t = 0; t < count; ++t) sums.emplace_back(size, kMagic);
 }
@@ -131,7 +128,7 @@ void BlockRounds::make_rings(const RoundCode& code, const Block& block) {
   mask_ = size - 1;
   rings_.resize(code.program.rounds.size());
   for (size_t k = 0; k < rings_.size(); ++k)
-    empty(rings_[k], static_cast<size_t>(code.program.rounds[k].numbers()), size);
+    make(rings_[k], static_cast<size_t>(code.program.rounds[k].numbers()), size);
 }
 
 void BlockRounds::meet(const RoundCode& code, size_t k, Ends ends, const Job& job) {
@@ -161,8 +158,11 @@ void BlockRounds::across(const RoundCode& code, size_t k, const RoundStep& step)
   const Jobs jobs(step, code.rule, numbers_of(code), bonds_);
   for (Side& side : sides_) {
     side.next = 0;
-    empty(side.sums, static_cast<size_t>(code.program.rounds[k].numbers()), side.group->size() * kGroup);
+    make(side.sums, static_cast<size_t>(code.program.rounds[k].numbers()), side.group->size() * kGroup);
     if (side.group->empty()) continue;
+    for (size_t g = 0; g < side.group->size(); ++g)
+      if (!some_rest || wanted_.is_near[(*side.group)[g]] != 0)
+        for (auto& sum : side.sums) std::fill_n(sum.data() + g * kGroup, kGroup, kMagic);
     const std::vector<double*> sums = pointers(side.sums);
     Job job = jobs.pairs();
     owner.give(job);
