@@ -163,7 +163,6 @@ void LatticeEngine::Impl::run_rounds() {
   const Active active = quiet_ ? quiet_->next() : Active();
   clear_blocks();
   compile_if_worth();
-  counters_.compiled_steps += rounds_->compiled();
   const auto all = [&](const auto& work) {
     for_each_block([&](Block& block) {
       work(number_of(block), RoundStep{particles_, block, active, step_});
@@ -192,9 +191,13 @@ void LatticeEngine::Impl::run_rounds() {
 }
 
 void LatticeEngine::Impl::take_rounds() {
-  if (!ahead_) return run_rounds();
-  change_places();
-  ahead_.reset();
+  if (!ahead_) {
+    run_rounds();
+  } else {
+    change_places();
+    ahead_.reset();
+  }
+  counters_.compiled_steps += rounds_->compiled();
 }
 
 // The state becomes what is ahead, and the other way round.
