@@ -10,6 +10,7 @@
 #include "hw/arch/arch.h"
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
+#include "model/base/standard_streams.h"
 #include "model/program/integer_program.h"
 #include "model/run/start.h"
 
@@ -26,19 +27,23 @@ void keep_rule(const std::string& directory, const std::string& given) {
     fmt::print(stderr, "{} is not compiled for each machine: {}\n", given, failed);
 }
 
-}  // namespace
-}  // namespace cuboct::emu
-
-int main(int argc, char** argv) {
+int keep_rules(int argc, char** argv) {
   if (argc < 3) {
     fmt::print(stderr, "usage: cuboct-keep-rules DIRECTORY SCENE[:STAGE]...\n");
     return 2;
   }
   try {
-    for (int k = 2; k < argc; ++k) cuboct::emu::keep_rule(argv[1], argv[k]);
+    for (int k = 2; k < argc; ++k) keep_rule(argv[1], argv[k]);
     return 0;
-  } catch (const cuboct::InputError& error) {
+  } catch (const InputError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 2;
   }
+}
+
+}  // namespace
+}  // namespace cuboct::emu
+
+int main(int argc, char** argv) {
+  return cuboct::with_standard_streams([=] { return cuboct::emu::keep_rules(argc, argv); });
 }
