@@ -2,7 +2,12 @@
 // Programs on the lattice engine: the pair law as a program beside golden, on every case.
 #include <gtest/gtest.h>
 
+#include "model/contract/golden.h"
+#include "model/contract/pair_program.h"
+#include "model/program/integer_program.h"
+#include "model/run/integer_engine.h"
 #include "tests/backend/against_golden.h"
+#include "tests/support/block.h"
 
 namespace cuboct::test {
 namespace {
@@ -105,6 +110,79 @@ TEST(LatticeProgramFaults, EachArisesAsInGolden) {
   }
   EXPECT_GT(expected, 8 * all_faults().size() / 2);
   EXPECT_EQ(count.faults, expected);
+}
+
+std::string fault_told_by(const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const RunError& e) {
+    return std::to_string(static_cast<int>(e.fault)) + " particle " + std::to_string(e.particle) +
+           " number " + std::to_string(e.number);
+  }
+  return "none";
+}
+
+// The first step, interpreted and compiled, beside golden's.
+void compare_first_fault(const Case& c, bool faults) {
+  const Plan& plan = c.setup.plan;
+  const auto& start = c.setup.initial.particles;
+  GoldenIntegers golden(plan.program->program, plan.lattice, plan.arch.capacity, c.setup.initial, nullptr);
+  const std::string expected = fault_told_by([&] { golden.advance(1, nullptr); });
+  EXPECT_EQ(expected != "none", faults);
+  for (const emu::RuleCode code : {emu::RuleCode::interpreted, emu::RuleCode::compiled}) {
+    emu::LatticeOptions options{.threads = 1, .quiescence = false, .simd = {}};
+    options.rule_code = code, options.code_directory = CUBOCT_RULE_CODE;
+    emu::LatticeEngine engine(
+        plan, 0, static_cast<uint32_t>(start.size()), [&](uint32_t k) { return start[k]; }, options);
+    EXPECT_EQ(fault_told_by([&] { engine.step(); }), expected) << static_cast<int>(code);
+  }
+}
+
+// The least number of a width fits, and its negative does not: a pair that is made once for both ends is
+// looked at from either.
+TEST(LatticeProgramFaults, AtAWidthsEndAreSeenFromBothEnds) {
+  Case c = as_program(fault_case(Fault::relative_velocity));
+  const FixedRule& rule = c.setup.plan.rule;
+  const int64_t half = int64_t{1} << (rule.widths.relative_velocity_bits - 2 + rule.w_shift);
+  for (const int64_t v : {half, -half, half / 2}) {
+    c.setup.initial.particles[0].v = {v, 0, 0}, c.setup.initial.particles[1].v = {-v, 0, 0};
+    compare_first_fault(c, std::abs(v) == half);
+  }
+}
+
+// A term that is neither odd nor even is checked from either end, each with its own difference.
+TEST(LatticeProgramFaults, AreSeenFromTheOtherEndAcrossASeam) {
+  for (const bool seam : {false, true}) {
+    Scene scene = block_scene({.size = {4, 4, 4}, .cutoff = 1.4, .dt = 0.1, .jitter = 0, .speed = 0});
+    scene.periodic.origin.setConstant(-0.3);
+    scene.periodic.extent.setConstant(4 * std::sqrt(2.0));
+    scene.body = {};
+    scene.body.x = {{0.1, 1, 1}, {seam ? 5.2 : 0.7, 1, 1}};
+    scene.body.v = {{0.8, 0, 0}, {0, 0, 0}};
+    scene.body.type.assign(2, 0);
+    Arch arch;
+    arch.capacity = 60;
+    Case c{"seam", make_setup(scene, arch), 1};
+    Plan& plan = c.setup.plan;
+    auto made = std::make_shared<IntegerProgram>();
+    made->program = pair_program(plan.rule, plan.arch.capacity);
+    graph::FixedProgram& program = made->program;
+    graph::Builder b;
+    std::vector<int> d, terms;
+    for (int a = 0; a < 3; ++a) d.push_back(read_apart(b, program, a));
+    const auto reach = static_cast<int64_t>(std::ldexp(1.4 / plan.rule.cell_edge, program.position_frac));
+    b.counts(b.lt(b.dot(d, d), b.constant(reach * reach)));
+    for (int a = 0; a < 3; ++a) {
+      const int v = read_velocity(b, program, graph::Source::other_v, a);
+      terms.push_back(b.clamp(b.check(v, 10, Fault::relative_velocity), {-1, 1}));
+    }
+    graph::Round& round = program.rounds.at(0);
+    round.when = b.when();
+    round.pair = b.take();
+    round.sums.at(0).terms = terms;
+    plan.program = made;
+    compare_first_fault(c, true);
+  }
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ TEST_F(RuleCodeTest, ACompilerThatMakesOtherNumbersIsNotTrusted) {
   const Mistake mistakes[] = {
       {"s/sum1 = fused(product1, /sum1 = fused(product1, -/", "makes other numbers of round"},
       {"s/store(to, x)/store(to, old_x)/", "makes other numbers of the finish of round"},
-      {"s/bad |= outside & counts/bad |= W{}/", "makes other numbers of "},
+      {"s/bad |= misfit & counts/bad |= W{}/", "makes other numbers of "},
       {"s/keep(job.v\\[axis\\] + i, v, awake/keep(job.v[axis] + i, v, ~W{}/",
        "makes other numbers of the finish"},
       {"s/drift, V{}/drift + 1.0, V{}/", "makes other numbers of the finish"},

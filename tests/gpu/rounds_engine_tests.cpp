@@ -53,6 +53,16 @@ TEST(GpuRounds, FaultsAriseAsInGolden) {
   EXPECT_EQ(compared.faults, all_faults().size());
 }
 
+// A look at the next step counts particles in cells, too: the step that follows must not take them for its
+// own.
+TEST(GpuRounds, FaultsAriseAsInGoldenRightAfterALook) {
+  for (const Fault fault : all_faults()) {
+    Compared compared;
+    compare_rounds(fault_case(fault), 3, compared, {}, 1);
+    EXPECT_EQ(compared.faults, 1u) << to_string(fault);
+  }
+}
+
 TEST(GpuRounds, RulesOfTextHaveGoldensBits) {
   const std::string rules = CUBOCT_SOURCE_DIR "/scenes/rules/";
   using Steps = std::pair<Scene, uint64_t>;

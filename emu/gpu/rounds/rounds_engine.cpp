@@ -49,8 +49,7 @@ class RoundsEngine final : public IntegerEngine {
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
     const uint64_t end = step_ + steps;
     while (step_ < end && !interrupted()) {
-      if (!listed_) make_lists();
-      if (has_kernels_ && !proven_) prove();
+      get_ready();
       const auto batch = static_cast<uint32_t>(std::min<uint64_t>(end - step_, batch_));
       const uint32_t done = run(batch, hashes, proven_);
       step_ += done;
@@ -74,17 +73,17 @@ class RoundsEngine final : public IntegerEngine {
   uint64_t hash() const override { return hash_of(plan_.lattice, state()); }
   std::vector<Int3> next_velocities() override {
     // A list that has served may leave a doubt that a new one does not.
-    do {
-      if (!listed_) make_lists();
-      if (has_kernels_ && !proven_) prove();
+    for (bool fresh = false; !fresh;) {
+      get_ready();
+      fresh = age_ == 0;
       const RoundsPlaces here = domain_.places;
       const bool done = run(1, nullptr, proven_) == 1;
       std::vector<Int3> v;
       if (done) v = domain_.velocities();
       domain_.places = here, near_stale_ = true;
       if (done) return v;
-      listed_ = age_ == 0;
-    } while (!listed_);
+      listed_ = false;  // cells have counted particles of a step that was doubted
+    }
     return GoldenIntegers(program_, plan_.lattice, plan_.arch.capacity, state(), plan_.program->rows)
         .next_velocities();
   }
@@ -108,6 +107,12 @@ class RoundsEngine final : public IntegerEngine {
     uint32_t doubt = kNoStep, old = kNoStep;
   };
 
+  void get_ready() {
+    if (!listed_) make_lists();
+    if (!has_kernels_ || proven_) return;
+    prove();
+    if (!listed_) make_lists();
+  }
   void make_lists() {
     domain_.make_lists(age_);
     near_stale_ = true;
@@ -143,7 +148,10 @@ class RoundsEngine final : public IntegerEngine {
       return hashes;
     };
     const std::vector<uint64_t> expected = hash_of_step(false);
-    if (expected.empty()) return;
+    if (expected.empty()) {
+      listed_ = false;  // as of a look at the next step
+      return;
+    }
     proven_ = hash_of_step(true) == expected;
     if (proven_ && count_ <= kProvenByGolden) {
       GoldenIntegers golden(program_, plan_.lattice, plan_.arch.capacity, state(), plan_.program->rows);

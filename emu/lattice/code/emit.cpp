@@ -133,7 +133,7 @@ std::string round_text(const graph::FixedProgram& program, size_t k, Ends ends, 
   const bool turned = ends == Ends::other;
   const PairEnds where = turned ? PairEnds{"j", "i", true} : PairEnds{"i", "j", false};
   const Surroundings surroundings{[&](const Node& node) { return pair_input(program, where, node); }, "near",
-                                  first_table};
+                                  first_table, true};
   const GraphText pair(round.pair, constants, surroundings);
   std::vector<int> written;
   for (const graph::Write& write : round.bond_writes) written.push_back(write.node);

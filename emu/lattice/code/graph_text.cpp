@@ -140,7 +140,7 @@ std::string GraphText::lookup(const Node& node) const {
 std::string GraphText::check(const Node& node) const {
   const Node& when = at(node.inputs[1]);
   const bool always = when.op == Op::constant && when.number != 0;
-  return fmt::format("checked({}, {}, {}{}, bad)", value(node.inputs[0]),
+  return fmt::format("checked<{}>({}, {}, {}{}, bad)", outside_.both_signs, value(node.inputs[0]),
                      constant_(-std::ldexp(1.0, node.width - 1)), outside_.counts,
                      always ? "" : " & " + truth(node.inputs[1]));
 }

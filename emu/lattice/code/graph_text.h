@@ -27,8 +27,9 @@ class CodeConstants {
 // What stands outside of a graph.
 struct Surroundings {
   std::function<std::string(const graph::Node& input)> input;
-  std::string counts;      // a truth: checks of these lanes count
-  size_t first_table = 0;  // of the graph's, in T
+  std::string counts;       // a truth: checks of these lanes count
+  size_t first_table = 0;   // of the graph's, in T
+  bool both_signs = false;  // as of VectorBlock
 };
 
 // Values of node n are `v<n>`, its truths `w<n>`. A finish and a pair never stand in one scope.

@@ -209,11 +209,13 @@ inline V lookup(const CodeTable& table, V argument, W law) {
 inline W law_of(V number, const CodeTable& table) { return whole(number) << table.index_bits; }
 
 // `a` in the bits whose least and greatest numbers are low and -low - 1. What does not fit is wrapped,
-// exactly: divisions by powers of two. `bad` gets the lanes of `counts` that did not fit.
+// exactly: divisions by powers of two. `bad` gets the lanes of `counts` that did not fit. kBothSigns: as of
+// VectorBlock.
+template <bool kBothSigns>
 inline V checked(V a, V low, W counts, W& bad) {
   const V lap = -2.0 * low;
-  const W outside = (a < low) | (a >= -low);
-  bad |= outside & counts;
+  const W above = a >= -low, outside = (a < low) | above, misfit = kBothSigns ? (a <= low) | above : outside;
+  bad |= misfit & counts;
   if (__builtin_expect(any(outside), 0)) {
     const V laps = floor_of((a - low) / lap);
     return outside ? a - laps * lap : a;

@@ -45,7 +45,7 @@ PairPass::PairPass(const graph::FixedProgram& program, const graph::Round& round
       early_inputs_(inputs_of(graph_, parts_.early)),
       late_inputs_(inputs_of(graph_, parts_.late)),
       kept_(read_of(graph_, parts_.early, parts_.late, parts_.outputs)),
-      block_(graph_, {parts_.early, parts_.late}, with(parts_.outputs, when_)),
+      block_(graph_, {parts_.early, parts_.late}, with(parts_.outputs, when_), true),
       own_(VectorBlock::kRoom),
       other_(VectorBlock::kRoom),
       own_place_(VectorBlock::kRoom),
@@ -146,16 +146,17 @@ void PairPass::flush(const Job& job, Ends ends) {
   if (const size_t lanes = choose(count_); lanes > 0) {
     fill(job, late_inputs_, lanes);
     fits = block_.run(1, lanes) && fits;
-    if (!fits) tell_misfits(job, lanes);
+    if (!fits) tell_misfits(job, ends, lanes);
     add(job, ends, lanes);
     write_bonds(job, lanes);
   }
   count_ = 0;
 }
 
-// Some pair of these has a check that failed.
-void PairPass::tell_misfits(const Job& job, size_t lanes) const {
-  for (size_t k = 0; k < lanes; ++k) job.misfit(job.owner, own_[k], other_[k], *entry_[k], slot_[k]);
+// Some pair of these has a check that failed. An entry is told from its lower end.
+void PairPass::tell_misfits(const Job& job, Ends ends, size_t lanes) const {
+  const auto &lower = ends == Ends::other ? other_ : own_, &higher = ends == Ends::other ? own_ : other_;
+  for (size_t k = 0; k < lanes; ++k) job.misfit(job.owner, lower[k], higher[k], *entry_[k], slot_[k]);
 }
 
 // The lanes that count move to the front.

@@ -31,7 +31,7 @@ class PairPass {
   void flush(const Job& job, Ends ends);
   size_t choose(size_t lanes);
   void repeat_first(const std::vector<int>& nodes, size_t lanes);
-  void tell_misfits(const Job& job, size_t lanes) const;
+  void tell_misfits(const Job& job, Ends ends, size_t lanes) const;
   void add(const Job& job, Ends ends, size_t lanes) const;
   void write_bonds(const Job& job, size_t lanes) const;
 

@@ -32,8 +32,8 @@ VectorTable vector_table(const FixedTable& table) {
 }
 
 VectorBlock::VectorBlock(const graph::Graph& graph, const std::vector<std::vector<int>>& parts,
-                         const std::vector<int>& outputs)
-    : graph_(graph), place_(graph.nodes.size()) {
+                         const std::vector<int>& outputs, bool both_signs)
+    : graph_(graph), both_signs_(both_signs), place_(graph.nodes.size()) {
   for (const FixedTable& table : graph.tables) tables_.push_back(vector_table(table));
   const graph::Registers registers = registers_for(graph, parts, outputs);
   memory_ = PaddedArray<double>(static_cast<size_t>(registers.count) * kRoom);
@@ -59,6 +59,7 @@ VectorStep VectorBlock::step_of(int n) {
   step.shift = node.shift, step.width = node.width, step.number = node.number;
   step.low = static_cast<double>(node.range.low), step.high = static_cast<double>(node.range.high);
   step.rounds = node.shift > 0;
+  step.both_signs = both_signs_;
   step.scale = rounding_factor(node.shift);
   if (node.op == Op::shl) step.scale = std::ldexp(1.0, node.shift);
   if (node.op == Op::floor) step.scale = std::ldexp(1.0, -node.shift);

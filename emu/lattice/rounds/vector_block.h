@@ -42,6 +42,7 @@ struct VectorStep {
   const VectorTable* table = nullptr;
   int64_t number = 0;
   bool rounds = false;
+  bool both_signs = false;  // of a check: -a is checked too
 };
 
 class VectorBlock {
@@ -49,9 +50,10 @@ class VectorBlock {
   static constexpr size_t kRoom = 256;  // lanes
 
   // `parts` and `outputs` as of registers_for: in parts after the first all lanes count. The graph must
-  // outlive the block.
+  // outlive the block. `both_signs`: a lane stands for a pair's other end as well, where odd values have the
+  // other sign; then the least number of a width, whose negative does not fit, counts as one that does not.
   VectorBlock(const graph::Graph& graph, const std::vector<std::vector<int>>& parts,
-              const std::vector<int>& outputs);
+              const std::vector<int>& outputs, bool both_signs = false);
 
   // Lanes are a multiple of kGroup: whoever writes an input repeats one of its lanes to that end.
   double* values(int node) { return place_[static_cast<size_t>(node)]; }
@@ -65,6 +67,7 @@ class VectorBlock {
   VectorStep step_of(int node);
 
   const graph::Graph& graph_;
+  bool both_signs_;
   std::vector<VectorTable> tables_;
   std::vector<double*> place_;  // by node; null: it is not run
   PaddedArray<double> memory_;

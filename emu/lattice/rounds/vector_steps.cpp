@@ -129,7 +129,8 @@ bool check(const VectorStep& step, size_t lanes) {
   each(step, lanes, [&](size_t k) {
     const V a = hn::Load(d, step.in[0] + k);
     const auto outside = hn::Or(hn::Lt(a, low), hn::Ge(a, high));
-    broken = hn::Or(broken, hn::And(outside, holds(hn::Load(d, step.in[1] + k))));
+    const auto misfit = step.both_signs ? hn::Or(outside, hn::Eq(a, low)) : outside;
+    broken = hn::Or(broken, hn::And(misfit, holds(hn::Load(d, step.in[1] + k))));
     // What does not fit is wrapped, exactly: divisions by powers of two.
     const V laps = hn::Floor(hn::Mul(hn::Sub(a, low), hn::Set(d, 1 / (2 * step.high))));
     return hn::IfThenElse(outside, hn::NegMulAdd(laps, hn::Set(d, 2 * step.high), a), a);
