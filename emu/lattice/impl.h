@@ -59,6 +59,7 @@ struct LatticeEngine::Impl {
 
   // program_step.cpp
   void run_rounds();
+  bool failed() const;  // in some block of this rank
   void take_rounds();
   void look_ahead();
   void change_places();
@@ -67,10 +68,8 @@ struct LatticeEngine::Impl {
   void take_kept_code();
   void compile_if_worth();
   std::vector<PaddedArray<double>*> halo_of_round(size_t k);
-  std::vector<int64_t> own_fields(const std::vector<PaddedArray<double>>& from) const;
-  // Numbers that stand by id, of own particles: those of other ranks come to rank 0, or to all.
-  enum class To { first, all };
-  void gather(std::vector<int64_t>& numbers, const std::function<Stretch(uint32_t id)>& of, To whom) const;
+  // Numbers that stand by id, of own particles: those of other ranks come to rank 0.
+  void gather(std::vector<int64_t>& numbers, const std::function<Stretch(uint32_t id)>& of) const;
   Stretch fields_of(uint32_t id) const;
   Stretch bonds_of(uint32_t id) const;
 

@@ -80,17 +80,8 @@ Stretch LatticeEngine::Impl::bonds_of(uint32_t id) const {
   return {first[id] * numbers, first[id + 1] * numbers};
 }
 
-std::vector<int64_t> LatticeEngine::Impl::own_fields(const std::vector<PaddedArray<double>>& from) const {
-  std::vector<int64_t> fields(from.size() * count_);
-  for_each_index([&](uint32_t p) {
-    auto to = fields.begin() + static_cast<ptrdiff_t>(fields_of(particles_.id_of(p)).begin);
-    for (const auto& field : from) *to++ = static_cast<int64_t>(field[p]);
-  });
-  return fields;
-}
-
-void LatticeEngine::Impl::gather(std::vector<int64_t>& numbers, const std::function<Stretch(uint32_t id)>& of,
-                                 To whom) const {
+void LatticeEngine::Impl::gather(std::vector<int64_t>& numbers,
+                                 const std::function<Stretch(uint32_t id)>& of) const {
   if (!shared()) return;
   std::vector<Bytes> to(static_cast<size_t>(options_.ranks->size()));
   for_each_index([&](uint32_t p) {
@@ -98,33 +89,30 @@ void LatticeEngine::Impl::gather(std::vector<int64_t>& numbers, const std::funct
     append(to[0], int64_t{id});
     for (size_t k = of(id).begin; k < of(id).end; ++k) append(to[0], numbers[k]);
   });
-  Bytes all;
-  if (whom == To::all)
-    all = options_.ranks->all(to[0]);
-  else
-    for (const Bytes& bytes : options_.ranks->exchange(to)) all.insert(all.end(), bytes.begin(), bytes.end());
   Stretch at{0, 0};
-  for_each_of<int64_t>(all, [&](int64_t number) {
+  const auto take = [&](int64_t number) {
     if (at.begin == at.end)
       at = of(static_cast<uint32_t>(number));
     else
       numbers[at.begin++] = number;
-  });
+  };
+  for (const Bytes& bytes : options_.ranks->exchange(to)) for_each_of<int64_t>(bytes, take);
 }
 
 std::vector<int64_t> LatticeEngine::Impl::fields() const {
-  std::vector<int64_t> fields = own_fields(particles_.fields);
-  if (!fields.empty())
-    gather(
-        fields, [&](uint32_t id) { return fields_of(id); }, To::first);
+  std::vector<int64_t> fields(particles_.fields.size() * count_);
+  for_each_index([&](uint32_t p) {
+    auto to = fields.begin() + static_cast<ptrdiff_t>(fields_of(particles_.id_of(p)).begin);
+    for (const auto& field : particles_.fields) *to++ = static_cast<int64_t>(field[p]);
+  });
+  if (!fields.empty()) gather(fields, [&](uint32_t id) { return fields_of(id); });
   return fields;
 }
 
 void LatticeEngine::Impl::give_bonds(State& state) const {
   state.bonds = rounds_->give_bonds();
   if (state.bonds.empty()) return;
-  gather(
-      state.bonds, [&](uint32_t id) { return bonds_of(id); }, To::first);
+  gather(state.bonds, [&](uint32_t id) { return bonds_of(id); });
   state.bond_begin = begins_of(*rows_of_bonds(), rounds_->program().bond_numbers());
 }
 
@@ -168,10 +156,6 @@ void LatticeEngine::Impl::run_rounds() {
       work(number_of(block), RoundStep{particles_, block, active, step_});
     });
   };
-  const auto failed = [&] {
-    return std::ranges::any_of(
-        blocks_, [](const Block& b) { return !b.pair_faults.empty() || !b.update_faults.empty(); });
-  };
   const size_t rounds = rounds_->program().rounds.size();
   size_t failed_in = rounds;
   for (size_t k = 0; k < rounds; ++k) {
@@ -188,6 +172,11 @@ void LatticeEngine::Impl::run_rounds() {
   options_.ranks->most(first);
   if (-first[0] < static_cast<double>(failed_in))
     for (Block& block : blocks_) block.pair_faults.clear(), block.update_faults.clear();
+}
+
+bool LatticeEngine::Impl::failed() const {
+  return std::ranges::any_of(
+      blocks_, [](const Block& b) { return !b.pair_faults.empty() || !b.update_faults.empty(); });
 }
 
 void LatticeEngine::Impl::take_rounds() {
@@ -225,11 +214,9 @@ void LatticeEngine::Impl::look_ahead() {
 
 std::vector<Int3> LatticeEngine::Impl::next_velocities() {
   if (!ahead_) look_ahead();
-  std::array<double, 1> failed{};
-  for (const Block& block : blocks_)
-    if (!block.pair_faults.empty() || !block.update_faults.empty()) failed[0] = 1;
-  if (shared()) options_.ranks->most(failed);
-  if (failed[0] > 0) return {};
+  std::array<double, 1> lost{failed() ? 1.0 : 0.0};
+  if (shared()) options_.ranks->most(lost);
+  if (lost[0] > 0) return {};
   return by_id([&](uint32_t p) {
     Int3 v;
     for (size_t a = 0; a < 3; ++a) v[a] = static_cast<int64_t>(ahead_->v[a][p]);

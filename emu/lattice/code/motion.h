@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The end of a step, in compiled code: velocities, displacements and places of some lanes. move.cpp is the
+// The end of a step, in compiled code: velocities, displacements and places of some lanes. FinishPass has the
 // same for the interpreter.
 #pragma once
 
