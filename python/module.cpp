@@ -91,9 +91,10 @@ py::tuple curves_of(const std::vector<Curve>& curves, double dt) {
 py::object spans_of(const Trace& trace) {
   if (trace.cycles.empty()) return py::none();
   const auto nodes = static_cast<py::ssize_t>(trace.nodes);
-  const auto steps = static_cast<py::ssize_t>(trace.cycles.size()) / (nodes * kPhases);
+  const auto phases = static_cast<py::ssize_t>(trace.phases());
+  const auto steps = static_cast<py::ssize_t>(trace.cycles.size()) / (nodes * phases);
   static_assert(sizeof(PhaseSpan) == 2 * sizeof(uint64_t));
-  py::array_t<uint64_t> array({steps, nodes, py::ssize_t{kPhases}, py::ssize_t{2}});
+  py::array_t<uint64_t> array({steps, nodes, phases, py::ssize_t{2}});
   std::memcpy(array.mutable_data(), trace.cycles.data(), trace.cycles.size() * sizeof(PhaseSpan));
   return array;
 }

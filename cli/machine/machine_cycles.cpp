@@ -36,7 +36,7 @@ std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint
     emu::CellSlots slots;
     emu::KickCounter kicks(plan, 0);
     std::vector<Particle> particles;
-    std::vector<PhaseSpan> spans(size_t{plan.nodes()} * kPhases);
+    std::vector<PhaseSpan> spans(spans_of_step(plan));
     while (counted.steps < steps && !interrupted()) {
       engine.slots(slots);
       particles.clear();

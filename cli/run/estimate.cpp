@@ -185,7 +185,7 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   e.samples =
       (of_energies * kEnergies + samples * kOfProbe * static_cast<double>(scene.probes.size())) * kCurvePoint;
   const bool cycles = size.cycles || engine.cycles;
-  e.spans = cycles ? steps * plan.nodes() * kPhases * sizeof(PhaseSpan) : 0;
+  e.spans = cycles ? steps * static_cast<double>(spans_of_step(plan)) * sizeof(PhaseSpan) : 0;
   // Each rank reads the scene and keeps its lattice.
   constexpr double kRead = 64, kRank = 40e6;
   e.memory = kProgram + particles * (rates.particle + rates.neighbour * extent.neighbours) +

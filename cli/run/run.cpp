@@ -75,7 +75,7 @@ bool counts_cycles(const RunOptions& options) {
 uint64_t rest_of(const RunOptions& options, const Loaded& loaded, uint64_t steps, uint64_t samples) {
   const uint64_t every = hashes_every(options.engine, options.engines);
   const uint64_t hashes = every > 0 ? steps / every + 2 : 0;
-  const uint64_t spans = counts_cycles(options) ? steps * loaded.setup.plan.nodes() * kPhases : 0;
+  const uint64_t spans = counts_cycles(options) ? steps * spans_of_step(loaded.setup.plan) : 0;
   const uint64_t curves = 6 + 3 * loaded.scene.probes.size();
   return 16 * (hashes + spans + curves * (samples + (1 << 10)));
 }

@@ -41,9 +41,9 @@ class Session {
     const auto nodes = by_node(plan_, state);
     uint16_t index = 0;
     for (uint32_t n = 0; n < nodes.size(); ++n)
-      for (const Particle& p : nodes[n]) {
-        Bits word = load_word(plan_, p);
-        word.put(plan_.words.particle_bits, plan_.bricks.cell_bits(), plan_.local_of(p.cell));
+      for (const auto& [loaded, cell] : nodes[n]) {
+        Bits word = loaded;
+        word.put(plan_.words.particle_bits, plan_.bricks.cell_bits(), cell);
         host_.load(index++, static_cast<uint16_t>(n), word, word_bits());
       }
   }
@@ -68,7 +68,7 @@ class Session {
       for (const Bits& word : host_.read(static_cast<uint16_t>(n), word_bits())) {
         const Slot slot = unpack_particle(plan_, word);
         Particle p;
-        p.id = slot.id;
+        p.id = slot.body.id;
         p.type = slot.body.type;
         p.cell = cell_of(n, word.get(plan_.words.particle_bits, plan_.bricks.cell_bits()));
         p.x = position_of(plan_.rule.widths, slot);

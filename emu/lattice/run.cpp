@@ -27,6 +27,15 @@ std::pair<bool, bool> all_agree(Ranks* ranks, bool stop, bool save) {
 
 int readers(const LatticeOptions& options) { return options.threads > 0 ? options.threads : usable_cores(); }
 
+// Throws InputError where the timing model counts no cycles.
+void check_timed(const Plan& plan, const Ranks* ranks) {
+  if (const std::string why = machine_refusal(plan); !why.empty())
+    throw InputError("--cycles: the timing model counts those of a machine, and " + why)
+        .about({"box.size", "box.cells", "box", "rule.file", "rule"});
+  if (ranks != nullptr && ranks->size() > 1)
+    throw InputError("--cycles: the timing model runs on one rank alone");
+}
+
 class Runner : public StateEngine {
  public:
   Runner(const Scene& scene, const Plan& plan, const LatticeChoice& choice, CheckpointReader* from,
@@ -69,11 +78,7 @@ class Runner : public StateEngine {
 Runner::Runner(const Scene& scene, const Plan& plan, const LatticeChoice& choice, CheckpointReader* from,
                bool cycles)
     : StateEngine(setting_of(scene, plan, readers(choice.engine))), plan_(plan), ranks_(choice.engine.ranks) {
-  if (cycles && !plan.rule.cubic())
-    throw InputError("the timing model counts cycles of nodes with cubic cells, and no cube divides the box")
-        .about({"box.size", "box.cells", "box"});
-  if (cycles && ranks_ && ranks_->size() > 1)
-    throw InputError("--cycles: the timing model runs on one rank alone");
+  if (cycles) check_timed(plan, ranks_);
   if (cycles) timing_.emplace(plan, choice.engine.threads);
   feed(scene, choice, from);
   if (!from) return;
@@ -113,7 +118,7 @@ void Runner::step() {
   if (timing_) engine_->slots(slots_);
   engine_->step();
   if (!timing_) return;
-  const size_t row = size_t{plan_.nodes()} * kPhases;
+  const size_t row = spans_of_step(plan_);
   spans_.resize(spans_.size() + row);
   timing_->step(slots_, engine_->leaving(), std::span(spans_).last(row));
 }
@@ -154,15 +159,28 @@ Counters Runner::counters() {
 // A rule that is text.
 class IntegerRunner : public IntegerEngine {
  public:
-  IntegerRunner(const Plan& plan, const State& from, const LatticeOptions& options)
-      : engine_(
+  // `cycles`: counts them; `clocks`: as IntegerEngine::clocks left them, or nothing.
+  IntegerRunner(const Plan& plan, const State& from, const LatticeOptions& options, bool cycles = false,
+                const std::vector<uint64_t>& clocks = {})
+      : plan_(plan),
+        engine_(
             plan, from.step, static_cast<uint32_t>(from.particles.size()),
             [&](uint32_t k) { return from.particles[k]; }, options, by_id(from)),
-        ranks_(options.ranks) {}
+        ranks_(options.ranks) {
+    if (!cycles) return;
+    timing_.emplace(plan, options.threads);
+    if (!clocks.empty()) timing_->resume(clocks);
+  }
 
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
     for (; steps > 0; --steps) {
+      if (timing_) engine_.slots(slots_);
       engine_.step();
+      if (timing_) {
+        const size_t row = spans_of_step(plan_);
+        spans_.resize(spans_.size() + row);
+        timing_->step(slots_, engine_.leaving(), std::span(spans_).last(row));
+      }
       if (hashes != nullptr) hashes->push_back(engine_.hash());
     }
   }
@@ -175,11 +193,22 @@ class IntegerRunner : public IntegerEngine {
   }
   Counters counters() const override {
     const LatticeCounters& counts = engine_.counters();
-    return {{"list_builds", static_cast<double>(counts.list_builds)},
+    Counters all;
+    if (timing_) {
+      CellSlots slots;
+      engine_.slots(slots);
+      all.emplace_back("cycles", static_cast<double>(timing_->cycles(slots)));
+    }
+    all.insert(all.end(), {{"list_builds", static_cast<double>(counts.list_builds)},
             {"node_steps", static_cast<double>(counts.node_steps)},
             {"quiet_node_steps", static_cast<double>(counts.quiet_node_steps)},
             {"compiled_steps", static_cast<double>(counts.compiled_steps)},
-            {"threads", engine_.threads()}};
+            {"threads", engine_.threads()}});
+    return all;
+  }
+  std::vector<PhaseSpan> phase_times() override { return std::exchange(spans_, {}); }
+  std::vector<uint64_t> clocks() const override {
+    return timing_ ? timing_->starts() : std::vector<uint64_t>();
   }
   bool leads() const override { return emu::leads(ranks_); }
   std::pair<bool, bool> agreed(bool stop, bool save) override { return all_agree(ranks_, stop, save); }
@@ -194,8 +223,12 @@ class IntegerRunner : public IntegerEngine {
     return kept;
   }
 
+  const Plan& plan_;
   LatticeEngine engine_;
   Ranks* const ranks_;
+  std::optional<TimingModel> timing_;
+  CellSlots slots_;
+  std::vector<PhaseSpan> spans_;
 };
 
 }  // namespace
@@ -218,10 +251,11 @@ EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoic
   kind.saves = true;
   if (plan.program != nullptr) {
     kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool cycles) {
-      if (cycles)
-        throw InputError("the timing model counts no cycles of a rule of text").about({"rule.file", "rule"});
-      return integer_run(scene, plan, from,
-                         [&](const State& state) { return integer_lattice(plan, state, choice.engine); });
+      if (cycles) check_timed(plan, choice.engine.ranks);
+      const std::vector<uint64_t> clocks = from ? from->head().engine.counters : std::vector<uint64_t>();
+      return integer_run(scene, plan, from, [&](const State& state) {
+        return std::make_unique<IntegerRunner>(plan, state, choice.engine, cycles, clocks);
+      });
     };
     return kind;
   }

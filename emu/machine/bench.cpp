@@ -269,7 +269,7 @@ void Bench::host() {
       return;
     case Host::load:
       for (uint32_t n = 0; n < nodes_.size(); ++n) {
-        load(plan_, particles_[n], loaded_, control);
+        load(particles_[n], loaded_, control);
         control_[n].write(control);
       }
       if (++loaded_ > most_) state_ = Host::start;

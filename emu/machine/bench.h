@@ -114,7 +114,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   const Plan& plan_;
   const RunOptions options_;
   const std::string engine_;
-  const std::vector<std::vector<Particle>> particles_;
+  const std::vector<std::vector<Loaded>> particles_;
   const uint64_t patience_;
   Timeline timeline_;
   const StallSource stalls_;

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <tuple>
 
@@ -18,8 +20,28 @@ std::string place_of(const Lattice& lattice, uint32_t cell) {
 }
 
 void sort_by_id(State& state) {
-  std::sort(state.particles.begin(), state.particles.end(),
-            [](const Particle& a, const Particle& b) { return a.id < b.id; });
+  const size_t numbers = state.fields.size() / std::max<size_t>(1, state.particles.size());
+  std::vector<size_t> order(state.particles.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::sort(order, {}, [&](size_t k) { return state.particles[k].id; });
+  State sorted{state.step, {}};
+  for (const size_t k : order) {
+    sorted.particles.push_back(state.particles[k]);
+    const auto fields = state.fields.begin() + static_cast<ptrdiff_t>(k * numbers);
+    sorted.fields.insert(sorted.fields.end(), fields, fields + static_cast<ptrdiff_t>(numbers));
+  }
+  state = std::move(sorted);
+}
+
+Bits load_word(const Plan& plan, const Particle& particle, std::span<const int64_t> fields) {
+  Slot slot;
+  put_position(plan.rule.widths, particle.x, slot);
+  slot.body.v = particle.v;
+  slot.body.type = particle.type;
+  slot.body.id = particle.id;
+  slot.body.fields.assign(fields.begin(), fields.end());
+  slot.u = particle.u;
+  return pack_particle(plan, slot);
 }
 
 }  // namespace
@@ -41,19 +63,22 @@ uint64_t patience_of(const Plan& plan, double stall_rate) {
          slow * static_cast<uint64_t>(64.0 * static_cast<double>(beats) / (1.0 - stall_rate));
 }
 
-std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial) {
-  std::vector<std::vector<Particle>> cells(plan.lattice.size());
+std::vector<std::vector<Loaded>> by_node(const Plan& plan, const State& initial) {
+  std::vector<std::vector<Loaded>> cells(plan.lattice.size());
   const Particle* first = nullptr;  // that found its cell full; `initial` ascends in id
-  for (const Particle& p : initial.particles) {
+  const size_t numbers = initial.fields.size() / std::max<size_t>(1, initial.particles.size());
+  for (size_t k = 0; k < initial.particles.size(); ++k) {
+    const Particle& p = initial.particles[k];
     if (static_cast<int>(cells[p.cell].size()) < plan.arch.capacity)
-      cells[p.cell].push_back(p);
+      cells[p.cell].push_back({load_word(plan, p, std::span(initial.fields).subspan(k * numbers, numbers)),
+                               plan.local_of(p.cell)});
     else if (first == nullptr)
       first = &p;
   }
   if (first != nullptr)
     throw RunError(Fault::full_x, initial.step, first->cell, first->id, plan.arch.capacity,
                    place_of(plan.lattice, first->cell));
-  std::vector<std::vector<Particle>> nodes(plan.nodes());
+  std::vector<std::vector<Loaded>> nodes(plan.nodes());
   for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (uint32_t local = 0; local < plan.bricks.cells(); ++local)
       if (const uint32_t cell = plan.cell_of(n, local); cell != kNoCell)
@@ -61,33 +86,26 @@ std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initia
   return nodes;
 }
 
-Bits load_word(const Plan& plan, const Particle& particle) {
-  Slot slot;
-  put_position(plan.rule.widths, particle.x, slot);
-  slot.body.v = particle.v;
-  slot.body.type = particle.type;
-  slot.u = particle.u;
-  slot.id = particle.id;
-  return pack_particle(plan, slot);
-}
-
-void load(const Plan& plan, const std::vector<Particle>& particles, size_t k, Control& control) {
+void load(const std::vector<Loaded>& particles, size_t k, Control& control) {
   control.load_valid = k < particles.size();
-  control.load_data = control.load_valid ? load_word(plan, particles[k]) : Bits{};
-  control.load_cell = control.load_valid ? plan.local_of(particles[k].cell) : 0;
+  control.load_data = control.load_valid ? particles[k].word : Bits{};
+  control.load_cell = control.load_valid ? particles[k].cell : 0;
 }
 
 Collector::Collector(const Plan& plan, const RunOptions& options)
     : plan_(plan),
       options_(options),
       nodes_(plan.nodes()),
-      shown_phase_(plan.bricks.one_cell() ? Phase::exchange_x : Phase::update),
-      last_phase_(last_phase(plan.rule.axes)),
+      rounds_(static_cast<int>(plan.rounds.size())),
+      phases_(static_cast<size_t>(phases_of(rounds_))),
+      shown_phase_(static_cast<int>(plan.bricks.one_cell() ? Phase::exchange_x : Phase::update)),
+      last_phase_(phase_index(last_phase(plan.rule.axes), 0, rounds_)),
       step_(nodes_),
       stopped_(nodes_) {
   std::sort(options_.frames.begin(), options_.frames.end());
   trace_.plan_hash = plan.hash;
   trace_.nodes = nodes_;
+  trace_.rounds = rounds_;
 }
 
 Collector::Snapshot& Collector::snapshot(uint64_t step) {
@@ -104,20 +122,24 @@ uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
 
 void Collector::observe(uint32_t node, const NodeOutputs& out) {
   const Slot slot = unpack_particle(plan_, out.observe_data);
-  if (slot.id >= plan_.particles)
+  if (slot.body.id >= plan_.particles)
     throw std::runtime_error(
-        fmt::format("step {}: holds particle {}, of {}", step_[node], slot.id, plan_.particles));
+        fmt::format("step {}: holds particle {}, of {}", step_[node], slot.body.id, plan_.particles));
   const uint64_t step = step_[node];
   Particle p;
-  p.id = slot.id;
+  p.id = slot.body.id;
   p.type = slot.body.type;
   p.cell = cell_of(node, out.observe_cell);
   p.x = position_of(plan_.rule.widths, slot);
   p.v = slot.body.v;
   p.u = slot.u;
   Snapshot& s = snapshot(step);
-  s.hash += hash_of(plan_.lattice, p);
-  if (s.kept || options_.keep_last) s.state.particles.push_back(p);
+  const std::vector<int64_t>& fields = slot.body.fields;
+  s.hash += plan_.program ? hash_of(plan_.lattice, p, fields) : hash_of(plan_.lattice, p);
+  if (s.kept || options_.keep_last) {
+    s.state.particles.push_back(p);
+    s.state.fields.insert(s.state.fields.end(), fields.begin(), fields.end());
+  }
   if (options_.keep_order) {
     if (order_.size() <= step)
       order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
@@ -172,20 +194,24 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
   if (stopped_[node]) return;
   last_event_ = cycle;
   const auto span = [&](int phase) -> PhaseSpan& {
-    return trace_.cycles[(step * nodes_ + node) * kPhases + static_cast<size_t>(phase)];
+    return trace_.cycles[(step * nodes_ + node) * phases_ + static_cast<size_t>(phase)];
   };
-  if (out.phase_start != 0 && trace_.cycles.size() < (step + 1) * nodes_ * kPhases)
-    trace_.cycles.resize((step + 1) * nodes_ * kPhases);
-  for (int p = 0; p < kPhases; ++p)
+  if (out.phase_start != 0 && trace_.cycles.size() < (step + 1) * nodes_ * phases_)
+    trace_.cycles.resize((step + 1) * nodes_ * phases_);
+  const int phases = static_cast<int>(phases_);
+  for (int p = 0; p < phases; ++p)
     if (out.phase_start >> p & 1) span(p).start = cycle;
   if (out.observe) observe(node, out);
-  for (int p = 0; p < kPhases; ++p)
+  for (int p = 0; p < phases; ++p)
     if (out.phase_end >> p & 1) span(p).end = cycle;
   // What a flat plan does not have lies, empty, after what comes before it.
-  if (last_phase_ != Phase::migrate_z)
-    for (const Phase y : {Phase::exchange_y, Phase::migrate_y})
-      if (out.phase_end >> static_cast<int>(y) & 1) span(static_cast<int>(y) + 1) = {cycle + 1, cycle};
-  if (out.phase_end & 1u << static_cast<int>(shown_phase_)) complete(step);
+  if (plan_.rule.axes == 2)
+    for (int p = 0; p < phases; ++p) {
+      const Phase kind = phase_at(p, rounds_).kind;
+      if ((kind == Phase::exchange_y || kind == Phase::migrate_y) && (out.phase_end >> p & 1) != 0)
+        span(p + 1) = {cycle + 1, cycle};
+    }
+  if (out.phase_end & 1u << shown_phase_) complete(step);
   if (out.fault) {
     const StopReason found{static_cast<Fault>(out.fault_code),
                            step,
@@ -193,10 +219,13 @@ void Collector::collect(uint32_t node, uint64_t cycle, const NodeOutputs& out) {
                            out.fault_id,
                            out.fault_number,
                            {}};
-    const auto key = [](const StopReason& r) { return std::tie(r.step, r.fault, r.particle, r.number); };
-    if (stop_.fault == Fault::none || key(found) < key(stop_)) stop_ = found;
+    const auto key = [](const StopReason& r, int stage) {
+      return std::tuple(r.step, stage, r.fault, r.particle, r.number);
+    };
+    if (stop_.fault == Fault::none || key(found, out.fault_stage) < key(stop_, stop_stage_))
+      stop_ = found, stop_stage_ = out.fault_stage;
   }
-  if (out.phase_end & 1u << static_cast<int>(last_phase_)) {
+  if (out.phase_end & 1u << last_phase_) {
     ++step_[node];
     ++finished_[step];
   }
@@ -227,7 +256,7 @@ Trace Collector::take_trace() {
     std::erase_if(trace_.frames, [&](const State& s) { return s.step > stop_.step; });
   }
   add_last();
-  trace_.cycles.resize(steps_done() * nodes_ * kPhases);
+  trace_.cycles.resize(steps_done() * nodes_ * phases_);
   return std::move(trace_);
 }
 

@@ -33,14 +33,16 @@ struct RunOptions {
 // More cycles than any phase of this plan can take, stalls included.
 uint64_t patience_of(const Plan& plan, double stall_rate);
 
+// A particle as the load port takes it: its word, and the cell of a brick.
+struct Loaded {
+  Bits word;
+  uint32_t cell = 0;
+};
 // The particles by physical node, in the order in which they are loaded: by cell, within a cell by id. Throws
 // RunError where a cell would hold more than its capacity.
-std::vector<std::vector<Particle>> by_node(const Plan& plan, const State& initial);
-
-// The word of the load port.
-Bits load_word(const Plan& plan, const Particle& particle);
+std::vector<std::vector<Loaded>> by_node(const Plan& plan, const State& initial);
 // The host's control of a cycle that loads number `k` of a node's particles, or nothing more.
-void load(const Plan& plan, const std::vector<Particle>& particles, size_t k, Control& control);
+void load(const std::vector<Loaded>& particles, size_t k, Control& control);
 
 class Collector {
  public:
@@ -89,8 +91,10 @@ class Collector {
   const Plan& plan_;
   RunOptions options_;  // frames ascending
   const uint32_t nodes_;
-  const Phase shown_phase_;  // with whose end a node has shown its particles
-  const Phase last_phase_;   // of a step
+  const int rounds_;
+  const size_t phases_;    // of a step
+  const int shown_phase_;  // with whose end a node has shown its particles
+  const int last_phase_;   // of a step
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in
   std::vector<bool> stopped_;              // per node: back in IDLE
@@ -98,7 +102,8 @@ class Collector {
   std::map<uint64_t, uint32_t> finished_;  // nodes that finished a step
   std::deque<State> recent_;               // the last complete ones, ascending, where the last is to be kept
   std::vector<std::vector<std::vector<uint32_t>>> order_;
-  StopReason stop_;  // the least (step, fault, id, number) so far
+  StopReason stop_;     // the least (step, stage, fault, id, number) so far
+  int stop_stage_ = 0;  // NodeOutputs::fault_stage
   bool done_ = false;
   uint64_t last_event_ = 0, last_cycle_ = 0;
 };

@@ -162,7 +162,7 @@ RunResult run_loop_bench(const Plan& plan, const State& initial, const RunOption
   for (size_t k = 0; k < most; ++k) {
     for (uint32_t n = 0; n < nodes; ++n) {
       Control& c = places[n].control;
-      load(plan, particles[n], k, c);
+      load(particles[n], k, c);
     }
     machine.clock({});
   }

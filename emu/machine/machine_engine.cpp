@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "model/program/integer_program.h"
+
 namespace cuboct::emu {
 namespace {
 
@@ -15,11 +17,10 @@ RunOptions handing_over(RunOptions options, std::deque<State>& to) {
 
 }  // namespace
 
-MachineEngine::MachineEngine(const FixedSetting& setting, const Plan& plan, const State& initial,
-                             const RunOptions& options, const NodeFactory& nodes, const std::string& engine)
-    : StateEngine(setting),
-      steps_(options.steps),
-      row_(plan.nodes() * static_cast<size_t>(kPhases)),
+MachineRun::MachineRun(const Plan& plan, const State& initial, const RunOptions& options,
+                       const NodeFactory& nodes, const std::string& engine)
+    : steps_(options.steps),
+      row_(spans_of_step(plan)),
       bench_("bench", plan, initial, handing_over(options, ahead_), nodes, engine),
       clock_({&bench_}) {
   reach(0);
@@ -28,7 +29,7 @@ MachineEngine::MachineEngine(const FixedSetting& setting, const Plan& plan, cons
   throw std::runtime_error("interrupted before all nodes held the initial state");
 }
 
-void MachineEngine::reach(uint64_t step) {
+void MachineRun::reach(uint64_t step) {
   // The run's last step ends with the bench, whose counts are then whole.
   while (!result_ && (trace().state_hash.size() <= step || step == steps_)) {
     clock_.go_on();
@@ -36,7 +37,7 @@ void MachineEngine::reach(uint64_t step) {
   }
 }
 
-void MachineEngine::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
+void MachineRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   const uint64_t wanted = step_ + steps;
   reach(wanted);
   const uint64_t end = std::min(wanted, trace().steps());
@@ -49,7 +50,7 @@ void MachineEngine::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   ended_ = true;
 }
 
-std::vector<PhaseSpan> MachineEngine::phase_times() {
+std::vector<PhaseSpan> MachineRun::phase_times() {
   const std::vector<PhaseSpan>& cycles = trace().cycles;
   const auto at = [&](uint64_t step) {
     return cycles.begin() + static_cast<ptrdiff_t>(std::min(step * row_, cycles.size()));
@@ -59,7 +60,7 @@ std::vector<PhaseSpan> MachineEngine::phase_times() {
   return spans;
 }
 
-Counters MachineEngine::counters() {
+Counters MachineRun::counters() const {
   if (result_ && step_ == result_->steps()) return result_->counters;
   const std::vector<PhaseSpan>& cycles = trace().cycles;
   uint64_t end = 0;
@@ -67,10 +68,19 @@ Counters MachineEngine::counters() {
   return {{"cycles", static_cast<double>(end)}};
 }
 
-State MachineEngine::make_state() {
+const State& MachineRun::state() const {
   const auto state = std::ranges::find(ahead_, step_, &State::step);
   if (state == ahead_.end()) throw std::logic_error(fmt::format("the bench kept no state of step {}", step_));
   return *state;
+}
+
+std::vector<Int3> MachineIntegers::next_velocities() {
+  return GoldenIntegers(plan_.program->program, plan_.lattice, plan_.arch.capacity, run_.state())
+      .next_velocities();
+}
+
+void MachineIntegers::for_each_slot(const std::function<void(const Particle&)>& see) const {
+  for (const Particle& particle : run_.state().particles) see(particle);
 }
 
 }  // namespace cuboct::emu

@@ -51,11 +51,14 @@ struct NodeInputs {
 // What a node shows of one cycle, and its link registers after the edge that ends the cycle.
 struct NodeOutputs {
   // Of the cycle.
-  uint8_t phase_start = 0, phase_end = 0;  // bit p: Phase p
+  uint32_t phase_start = 0, phase_end = 0;  // bit p: number p of the step's phases (model/trace/trace.h)
   bool observe = false, fault = false, idle = false;
   Bits observe_data;                          // where `observe`
   uint32_t observe_cell = 0, fault_cell = 0;  // of a brick: where `observe`, where `fault`
-  uint8_t fault_code = 0;                     // these three where `fault`
+  uint8_t fault_code = 0;                     // these where `fault`
+  // Of a rule of text, what the node was doing: twice the round, one more in its finish, two more in a
+  // migration. An earlier stage's fault counts before a later one's.
+  int fault_stage = 0;
   uint32_t fault_id = 0;
   int64_t fault_number = 0;
   uint8_t beat_errors = 0, ack_errors = 0;  // link_error_o: of arriving beats, of acknowledgements

@@ -26,6 +26,7 @@ class MachineProgram : public EngineProgram {
     name = machine.name;
     description = machine.description;
     abilities.always_cycles = true;
+    abilities.text = machine.text;
     abilities.steps = std::numeric_limits<uint32_t>::max();
   }
 
@@ -58,7 +59,14 @@ class MachineProgram : public EngineProgram {
                        "leave out [boards], or the faults");
     EngineKind kind = fixed_kind(machine_.engine, scene, plan);
     kind.batches = kind.hashes_come = true;
-    kind.make = [this, &scene, &plan](CheckpointReader*, bool) {
+    if (const std::string why = machine_refusal(plan); !why.empty())
+      throw InputError(fmt::format("the {} engine: {}", machine_.engine, why)).about({"rule.file", "rule"});
+    kind.make = [this, &scene, &plan](CheckpointReader* from, bool) -> std::unique_ptr<Engine> {
+      if (plan.program)
+        return integer_run(scene, plan, from, [this, &plan](const State& initial) {
+          return std::make_unique<MachineIntegers>(plan, initial, run_, machine_.nodes(plan),
+                                                   machine_.engine);
+        });
       const State initial = to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
       return std::make_unique<MachineEngine>(setting_of(scene, plan), plan, initial, run_,
                                              machine_.nodes(plan), machine_.engine);

@@ -18,6 +18,7 @@ struct Machine {
   std::string name;         // "cuboct-systemc"
   std::string description;  // one line
   std::string engine;       // Trace::engine
+  bool text = false;        // runs rules that are text
   std::function<void(Command&)> add_options = [](Command&) {};
   std::function<NodeFactory(const Plan&)> nodes;  // called once the plan is known
 };

@@ -5,15 +5,26 @@
 
 #include <algorithm>
 
+#include "model/program/integer_program.h"
+
 namespace cuboct::emu {
 namespace {
 
 __extension__ typedef unsigned __int128 Wide;
 
+size_t numbers_of(const Plan& plan) {
+  return plan.program ? static_cast<size_t>(plan.program->program.numbers()) : 0;
+}
+
+int64_t number_in(const WordField& f, const Bits& bits) {
+  return f.is_signed ? bits.get_signed(f.lsb, f.bits) : static_cast<int64_t>(bits.get(f.lsb, f.bits));
+}
+
 }  // namespace
 
 void check_words(const Plan& plan) {
-  const int widest = std::max(plan.words.halo_bits, plan.words.migrate_bits);
+  int widest = std::max(plan.words.halo_bits, plan.words.migrate_bits);
+  for (const PlanRound& round : plan.rounds) widest = std::max(widest, bits_of(round.record));
   if (widest > Bits::kWidth)
     throw InputError(fmt::format("a record of {} bits: the cycle-accurate engines hold at most {}", widest,
                                  int{Bits::kWidth}))
@@ -41,6 +52,8 @@ void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits
     out.put(f.lsb, f.bits,
             f.kind == FieldKind::velocity ? candidate.v[static_cast<size_t>(f.axis)]
             : f.kind == FieldKind::type   ? candidate.type
+            : f.kind == FieldKind::id     ? int64_t{candidate.id}
+            : f.kind == FieldKind::field  ? candidate.fields[static_cast<size_t>(f.number)]
                                           : int64_t{cell});
   }
 }
@@ -57,16 +70,29 @@ uint32_t unpack_halo(const Plan& plan, const Bits& bits, Candidate& out) {
   }
   uint32_t cell = 0;
   out.type = 0;
+  out.fields.resize(numbers_of(plan));
   for (size_t k = axes; k < word.size(); ++k) {
     const WordField& f = word[k];
     if (f.kind == FieldKind::velocity)
       out.v[static_cast<size_t>(f.axis)] = bits.get_signed(f.lsb, f.bits);
     else if (f.kind == FieldKind::type)
       out.type = static_cast<uint8_t>(bits.get(f.lsb, f.bits));
+    else if (f.kind == FieldKind::id)
+      out.id = static_cast<uint32_t>(bits.get(f.lsb, f.bits));
+    else if (f.kind == FieldKind::field)
+      out.fields[static_cast<size_t>(f.number)] = number_in(f, bits);
     else
       cell = static_cast<uint32_t>(bits.get(f.lsb, f.bits));
   }
   return cell;
+}
+
+void pack_later(const WordLayout& record, std::span<const int64_t> fields, Bits& out) {
+  for (const WordField& f : record) out.put(f.lsb, f.bits, fields[static_cast<size_t>(f.number)]);
+}
+
+void unpack_later(const WordLayout& record, const Bits& bits, std::span<int64_t> fields) {
+  for (const WordField& f : record) fields[static_cast<size_t>(f.number)] = number_in(f, bits);
 }
 
 Bits pack_particle(const Plan& plan, const Slot& slot) {
@@ -84,11 +110,13 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
         case FieldKind::type:
           return slot.body.type;
         case FieldKind::id:
-          return slot.id;
+          return slot.body.id;
         case FieldKind::residue:
           return slot.residue[a];
         case FieldKind::displacement:
           return slot.u[a];
+        case FieldKind::field:
+          return slot.body.fields[static_cast<size_t>(f.number)];
         case FieldKind::cell:
           break;
       }
@@ -101,10 +129,10 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
 
 Slot unpack_particle(const Plan& plan, const Bits& bits) {
   Slot out;
+  out.body.fields.resize(numbers_of(plan));
   for (const WordField& f : plan.words.particle) {
     const auto a = static_cast<size_t>(std::max(f.axis, 0));
-    const int64_t value =
-        f.is_signed ? bits.get_signed(f.lsb, f.bits) : static_cast<int64_t>(bits.get(f.lsb, f.bits));
+    const int64_t value = number_in(f, bits);
     switch (f.kind) {
       case FieldKind::position:
         out.body.x[a] = static_cast<int32_t>(value);
@@ -119,13 +147,16 @@ Slot unpack_particle(const Plan& plan, const Bits& bits) {
         out.body.type = static_cast<uint8_t>(value);
         break;
       case FieldKind::id:
-        out.id = static_cast<uint32_t>(value);
+        out.body.id = static_cast<uint32_t>(value);
         break;
       case FieldKind::residue:
         out.residue[a] = static_cast<int32_t>(value);
         break;
       case FieldKind::displacement:
         out.u[a] = value;
+        break;
+      case FieldKind::field:
+        out.body.fields[static_cast<size_t>(f.number)] = value;
         break;
       case FieldKind::cell:
         break;

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "emu/machine/bits.h"
 #include "hw/plan/plan.h"
@@ -14,7 +16,9 @@ namespace cuboct::emu {
 struct Candidate {
   std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30. z stays 0 in a flat plan
   uint8_t type = 0;
-  Int3 v{};  // P+G fractional bits; zero unless the rule damps
+  Int3 v{};  // P+G fractional bits; zero unless the rule reads it
+  uint32_t id = 0;              // where the rule reads it; of an own particle always
+  std::vector<int64_t> fields;  // of a rule of text: its numbers, those of others as far as they were sent
 };
 
 // A particle in a slot.
@@ -22,7 +26,6 @@ struct Slot {
   Candidate body;                    // x: visible
   std::array<int32_t, 3> residue{};  // the G bits of the position below those
   Int3 u{};
-  uint32_t id = 0;
   std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
 };
 
@@ -38,6 +41,9 @@ void check_words(const Plan& plan);
 void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
 // In the frame of the sender; returns the cell, 0 without bricks.
 uint32_t unpack_halo(const Plan& plan, const Bits& bits, Candidate& out);
+// The same of a later round's record: its fields alone.
+void pack_later(const WordLayout& record, std::span<const int64_t> fields, Bits& out);
+void unpack_later(const WordLayout& record, const Bits& bits, std::span<int64_t> fields);
 Bits pack_particle(const Plan& plan, const Slot& slot);
 Slot unpack_particle(const Plan& plan, const Bits& bits);
 

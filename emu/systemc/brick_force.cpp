@@ -85,7 +85,7 @@ void BrickForce::issue(const Stream& stream, uint32_t entry, uint64_t& mask) {
 uint64_t BrickForce::run() {
   static thread_local Stream stream;
   filter(stream);
-  const uint64_t last = clock_force(plan_, stream, segments_, available_, counts_,
+  const uint64_t last = clock_force(plan_, stream, segments_, available_, pipe(), counts_,
                                     [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
   for (size_t segment = 0; segment < static_cast<size_t>(segments_); ++segment) {
     counts_.candidates -= stream.idle[segment];

@@ -185,7 +185,7 @@ bool BrickNode::leave(uint32_t local, const Slot& slot) {
   const uint32_t cell = plan_.bricks.cell(node_, local);
   const uint32_t to = cell == kNoCell ? kNoCell : plan_.lattice.neighbour(cell, face);
   if (to == kNoCell) {
-    fault_.add(along(Fault::left_x, a), slot.id, 0, local);
+    fault_.add(along(Fault::left_x, a), slot.body.id, 0, local);
     return true;
   }
   // Whether it goes over the brick's face.
@@ -247,7 +247,7 @@ void BrickNode::settle(uint32_t local, std::deque<Mover>& from) {
     slots.push_back(s);
     mark(local, s, axis() + 1);
   } else {
-    fault_.add(along(Fault::full_x, axis()), s.id, capacity_, local);
+    fault_.add(along(Fault::full_x, axis()), s.body.id, capacity_, local);
   }
   from.pop_front();
 }
@@ -283,7 +283,7 @@ void BrickNode::take_particle(int face, const Bits& record) {
   mover.slot.away[static_cast<size_t>(a)] = 0;
 }
 
-void BrickNode::take_halo(int face, const Bits& record) {
+void BrickNode::take_halo(int face, int, const Bits& record) {
   const int a = face / 2;
   Candidate candidate;
   const uint32_t tag = unpack_halo(plan_, record, candidate);

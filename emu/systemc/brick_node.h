@@ -33,7 +33,7 @@ class BrickNode final : public NodeMachine {
   void dump() override;
   void clear_halos() override;
   void take_particle(int face, const Bits& record) override;
-  void take_halo(int face, const Bits& record) override;
+  void take_halo(int face, int round, const Bits& record) override;
   uint8_t awaited() const override;
 
   bool walk_on(size_t count);

@@ -40,11 +40,11 @@ struct ForceStream {
 // Steps all cycles of one streamer and its pipes from cycle `begin` on, register by register; the last one.
 // there(segment, entry): the cycle from which on the entry may be read; complete(segment): that from which on
 // it is known that the segment has no further entry. `settle`: cycles after all but the pipes is empty,
-// before which the last one does not come. issue(entry, mask) issues the lowest bits of `mask`, one per pipe,
+// before which the last one does not come. `pipe`: from a pair's issue to its sum. issue(entry, mask) issues the lowest bits of `mask`, one per pipe,
 // and clears them.
 template <typename There, typename Complete, typename Issue>
 uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint64_t begin, There there,
-                      Complete complete, int settle, ForceCounts& counts, Issue issue) {
+                      Complete complete, int settle, int pipe, ForceCounts& counts, Issue issue) {
   const uint32_t depth = static_cast<uint32_t>(plan.arch.queue_depth);
   stream.queue.resize(depth);
 
@@ -89,7 +89,7 @@ uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint6
       ++counts.issue_cycles;
       // Issued in cycle t, in the sum from t + pipe on: the pipe is empty in cycle t + pipe, and this edge
       // ends cycle t.
-      drain = plan.latency.pipe - 1;
+      drain = pipe - 1;
     } else if (drain > 0) {
       --drain;
     }
@@ -131,11 +131,11 @@ uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint6
 // on the own cells, and the halos of each axis, may be read; the first is the engine's first cycle.
 template <typename Issue>
 uint64_t clock_force(const Plan& plan, ForceStream& stream, int segments,
-                     const std::array<uint64_t, 4>& available, ForceCounts& counts, Issue issue) {
+                     const std::array<uint64_t, 4>& available, int pipe, ForceCounts& counts, Issue issue) {
   const auto from = [&](int segment) { return available[static_cast<size_t>(segment + 1) / 2]; };
   const uint64_t last = clock_stream(
       plan, stream, segments, available[0], [&](int segment, uint32_t) { return from(segment); }, from, 0,
-      counts, issue);
+      pipe, counts, issue);
   counts.busy += last - available[0] + 1;
   return last;
 }

@@ -19,7 +19,9 @@ struct ForceEngine::Stream : ForceStream {
 ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
                          const std::array<std::vector<Candidate>, kFaces>& halo, const HaloTimes& times,
                          FaultKeeper& fault)
-    : ForceMachine(plan, 1, fault), own_(own), halo_(halo), times_(times) {}
+    : ForceMachine(plan, 1, fault), own_(own), halo_(halo), times_(times) {
+  if (plan.program) rounds_ = std::make_unique<RoundWork>(plan, own, fault);
+}
 
 void ForceEngine::begin_filter(Stream& stream) const {
   stream.record.clear();
@@ -71,8 +73,10 @@ uint64_t ForceEngine::stream() {
   static thread_local Stream stream;  // of the node that runs: a lattice of nodes shares the cache lines
   filter(stream);
   count_faces(stream);
-  return clock_force(plan_, stream, segments_, available_, counts_,
-                     [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
+  const uint64_t last = clock_force(plan_, stream, segments_, available_, pipe(), counts_,
+                                    [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); });
+  if (rounds_) counts_.pairs_inside += rounds_->add();
+  return last;
 }
 
 // Streamer 0 walks the own particles and the faces below, streamer 1 those above; one alone walks all. A
@@ -130,7 +134,7 @@ uint64_t ForceEngine::arrive() {
     last = std::max(last, clock_stream(
                               plan_, stream, static_cast<int>(segments), begin,
                               [](int, uint32_t entry) { return there[entry]; },
-                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, 1, counts_,
+                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, 1, pipe(), counts_,
                               [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); }));
   }
   last = std::max(last, available_[static_cast<size_t>(plan_.rule.axes)]);

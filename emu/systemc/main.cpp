@@ -11,6 +11,7 @@ int sc_main(int argc, char** argv) {
                                   {.name = "cuboct-systemc",
                                    .description = "Runs a scene on cycle-accurate nodes in SystemC",
                                    .engine = "systemc",
+                                   .text = true,
                                    .nodes = cuboct::emu::native_nodes});
 }
 

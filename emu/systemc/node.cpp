@@ -6,6 +6,7 @@
 #include "emu/systemc/brick_node.h"
 #include "emu/systemc/link_guard.h"
 #include "model/base/fixed_math.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 
@@ -34,6 +35,8 @@ void Node::append(uint32_t, const Slot& slot) { own_.push_back(slot); }
 
 void Node::clear_halos() {
   for (auto& h : halo_) h.clear();
+  for (auto& faces : later_)
+    for (auto& records : faces) records.clear();
   for (auto& came : times_.came) came.clear();
   times_.ended.fill(0);
 }
@@ -48,9 +51,11 @@ void Node::begin() {
   }
   if (!goes_on || main_ == Main::exchange_x) segment_ = record_ = 0;
   kept_ = 0;
+  if (main_ == Main::force && round_ > 0) take_later();
   if (main_ == Main::update) {
     const int n = static_cast<int>(own_.size());
-    const int cycles = n == 0 ? 1 : (n - 1) * plan_.latency.stride + plan_.latency.update;
+    const int finish = plan_.rounds[static_cast<size_t>(round_)].finish;
+    const int cycles = n == 0 ? 1 : (n - 1) * plan_.latency.stride + finish;
     phase_last_ = now_ + static_cast<uint64_t>(cycles);
   }
   if (migrates())
@@ -59,7 +64,29 @@ void Node::begin() {
                                                                 : Migrate::end;
 }
 
+void Node::pack_relayed(int segment, int record, Bits& out) const {
+  if (round_ == 0) return pack_halo(plan_, relayed(segment, record), 0, out);
+  const auto round = static_cast<size_t>(round_), at = static_cast<size_t>(record);
+  pack_later(plan_.rounds[round].record,
+             segment == 0 ? own_[at].body.fields
+                          : later_[round % 2][static_cast<size_t>(segment - 1)][at],
+             out);
+}
+
+// The numbers that came in this round, to the records that they belong to.
+void Node::take_later() {
+  const auto round = static_cast<size_t>(round_);
+  for (size_t f = 0; f < kFaces; ++f) {
+    auto& records = later_[round % 2][f];
+    for (size_t k = 0; k < records.size(); ++k)
+      for (const WordField& field : plan_.rounds[round].record)
+        halo_[f][k].fields[static_cast<size_t>(field.number)] = records[k][static_cast<size_t>(field.number)];
+    records.clear();
+  }
+}
+
 int Node::relayed_size(int segment) const {
+  if (plan_.rounds[static_cast<size_t>(round_)].beats == 0) return 0;
   return static_cast<int>(segment == 0 ? own_.size() : halo_[segment - 1].size());
 }
 
@@ -84,7 +111,7 @@ Node::Relayed Node::ask() {
     return {Relayed::Kind::end, relay_axis_++, 0};
   }
   const int count = relayed_size(segment_);
-  const bool complete = segment_ == 0 || !linked(segment_ - 1) || (halo_end_ & bit(segment_ - 1)) != 0;
+  const bool complete = segment_ == 0 || !linked(segment_ - 1) || (halo_ended() & bit(segment_ - 1)) != 0;
   if (record_ == count) {
     if (complete) next_segment();
     return {};
@@ -134,7 +161,7 @@ void Node::exchange() {
   if (plan_.arch.halos == Halos::arrival) {
     const bool sent = (sent_axes_ & bit(axis())) != 0;
     relay();
-    if (sent && (faces_of(axis()) & ~halo_end_) == 0) finish_phase(after(main_));
+    if (sent && (faces_of(axis()) & ~halo_ended()) == 0) finish_phase(after(main_));
     return;
   }
   const int low = 2 * axis(), high = low + 1;
@@ -148,21 +175,21 @@ void Node::exchange() {
     return;
   }
   if (!can_load(faces_of(axis()))) return;
-  if (beat_ == 0 && main_ == Main::exchange_x) {
+  if (beat_ == 0 && main_ == Main::exchange_x && round_ == 0) {
     out_->observe = true;
     out_->observe_data = pack_particle(plan_, own_[record_]);
   }
-  const Candidate& record = relayed(segment_, record_);
+  const int beats = plan_.rounds[static_cast<size_t>(round_)].beats;
   if (beat_ == 0) count_relayed(segment_ == 0);
-  if (plan_.words.halo_beats == 1) {
+  if (beats == 1) {
     for (const int f : {low, high})
-      if (linked(f)) pack_halo(plan_, record, 0, load(f, false));
+      if (linked(f)) pack_relayed(segment_, record_, load(f, false));
   } else {
-    if (beat_ == 0) word_ = {}, pack_halo(plan_, record, 0, word_);
+    if (beat_ == 0) word_ = {}, pack_relayed(segment_, record_, word_);
     load_slice(low);
     load_slice(high);
   }
-  if (++beat_ < plan_.words.halo_beats) return;
+  if (++beat_ < beats) return;
   beat_ = 0;
   if (++record_ < relayed_size(segment_)) return;
   record_ = 0;
@@ -175,6 +202,11 @@ void Node::update() {
     return;
   }
   leaving_ = 0;
+  if (!last_round()) {
+    for (size_t k = 0; k < own_.size(); ++k) finish_slot(own_[k], 0, k);
+    finish_phase(Main::exchange_x);
+    return;
+  }
   for (size_t k = 0; k < own_.size(); ++k) {
     finish_slot(own_[k], 0, k);
     for (int a = 0; a < 3; ++a)
@@ -210,7 +242,7 @@ void Node::scan() {
     if (kept_ != static_cast<size_t>(record_)) own_[kept_] = s;
     ++kept_;
   } else if (!linked(face)) {
-    fault_.add(along(Fault::left_x, a), s.id, 0, 0);
+    fault_.add(along(Fault::left_x, a), s.body.id, 0, 0);
   } else if (!can_load(bit(face))) {
     return;
   } else {
@@ -241,7 +273,7 @@ void Node::take(int face, Migrate next, bool last) {
     if (in.popped == in.fifo.size()) in.fifo.clear(), in.popped = 0;
     s.away[a] = 0;
     if (static_cast<int>(own_.size()) == capacity_) {
-      fault_.add(along(Fault::full_x, a), s.id, capacity_, 0);
+      fault_.add(along(Fault::full_x, a), s.body.id, capacity_, 0);
       return;
     }
     own_.push_back(s);
@@ -282,7 +314,14 @@ void Node::take_particle(int face, const Bits& record) {
   inbox_[face].came = now_;
 }
 
-void Node::take_halo(int face, const Bits& record) {
+void Node::take_halo(int face, int round, const Bits& record) {
+  if (round > 0) {
+    const auto at = static_cast<size_t>(round);
+    auto& numbers = later_[at % 2][static_cast<size_t>(face)].emplace_back();
+    numbers.resize(static_cast<size_t>(plan_.program->program.numbers()));
+    unpack_later(plan_.rounds[at].record, record, numbers);
+    return;
+  }
   // Into the own frame.
   const int P = plan_.rule.widths.position_frac;
   const int64_t cell = int64_t{1} << P;

@@ -33,7 +33,7 @@ class Node final : public NodeMachine {
   void dump() override;
   void clear_halos() override;
   void take_particle(int face, const Bits& record) override;
-  void take_halo(int face, const Bits& record) override;
+  void take_halo(int face, int round, const Bits& record) override;
   void take_halo_end(int face) override { times_.ended[static_cast<size_t>(face)] = now_; }
   uint8_t awaited() const override;
 
@@ -49,13 +49,18 @@ class Node final : public NodeMachine {
   // Loads the end beats of a migration that begins with the next phase, if no own particle leaves along it.
   bool end_early(int axis);
 
+  void take_later();
   void scan();
   void take(int face, Migrate next, bool last);
   const Candidate& relayed(int segment, int record) const;
+  // Packs the record that is sent on in this round.
+  void pack_relayed(int segment, int record, Bits& out) const;
   int relayed_size(int segment) const;
 
   std::vector<Slot> own_;
   std::array<std::vector<Candidate>, kFaces> halo_;
+  // What came in later rounds, by the round's parity and face: a rule's numbers of each record.
+  std::array<std::array<std::vector<std::vector<int64_t>>, kFaces>, 2> later_;
   std::array<Inbox, kFaces> inbox_;
   Migrate migrate_ = Migrate::scan;
   int segment_ = 0, record_ = 0;  // exchange; `record_` also scan and dump

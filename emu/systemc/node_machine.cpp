@@ -18,7 +18,10 @@ NodeMachine::NodeMachine(const Plan& plan, uint8_t has_link)
 
 void NodeMachine::reset() {
   for (Assembly& a : assembly_) a.beat = 0;
-  migrating_ = halo_end_ = migrate_end_ = 0;
+  stream_ = {};
+  halo_end_ = {};
+  migrate_end_ = 0;
+  round_ = 0;
   engine_->reset();
   main_ = Main::idle;
   fault_ = {};
@@ -67,7 +70,11 @@ void NodeMachine::enter(Main next) {
   begin();
   if (next == Main::dump || next == Main::idle) return;
   const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
-  if (begins_engine) engine_->begin(now_ + 1), starting_ |= bit(static_cast<int>(Phase::force));
+  if (RoundWork* const work = engine_->rounds(); work != nullptr) {
+    fault_.now = 2 * round_ + (next < Main::update ? 0 : next == Main::update ? 1 : 2);
+    if (next == Main::force) work->begin(round_, step_);
+  }
+  if (begins_engine) engine_->begin(now_ + 1), starting_ |= phase_bit(Main::force);
   if (next == Main::force)
     engine_->available(axes_ - 1, now_ + 1);
   else if (next > Main::exchange_x && next < Main::force)
@@ -75,11 +82,15 @@ void NodeMachine::enter(Main next) {
   if (next == Main::force)
     phase_last_ = engine_->run();
   else
-    starting_ |= bit(static_cast<int>(next));
+    starting_ |= phase_bit(next);
 }
 
 void NodeMachine::finish_phase(Main next) {
-  out_->phase_end |= bit(static_cast<int>(main_));
+  out_->phase_end |= phase_bit(main_);
+  if (main_ == Main::update && next == Main::exchange_x)
+    ++round_;
+  else if (migrates() && !(next >= Main::migrate_x && next <= Main::migrate_z))
+    round_ = 0;
   enter(next);
 }
 
@@ -96,17 +107,19 @@ void NodeMachine::finish_migration() {
     out_->fault_id = fault_.id;
     out_->fault_number = fault_.number;
     out_->fault_cell = fault_.cell;
+    out_->fault_stage = fault_.stage;
     fault_ = {};
   }
   finish_phase(++step_ < steps_ ? Main::exchange_x : Main::dump);
 }
 
 void NodeMachine::finish_slot(Slot& slot, uint32_t cell, size_t index) {
+  ++updates_;
+  if (RoundWork* const work = engine_->rounds(); work != nullptr) return work->finish(slot, index);
   const Widths& w = plan_.rule.widths;
   const FinishResult r = finish(plan_.rule, engine_->take_sum(cell, index), position_of(w, slot), slot.body.v,
                                 slot.u, slot.body.type);
-  fault_.add(r.fault, slot.id, r.number, cell);
-  ++updates_;
+  fault_.add(r.fault, slot.body.id, r.number, cell);
   slot.u = r.u;
   for (size_t a = 0; a < 3; ++a) {
     slot.body.v[a] = wrap(r.v[a], w.velocity_bits);
@@ -126,7 +139,7 @@ void NodeMachine::idle(const Control& host) {
 }
 
 void NodeMachine::await_halos() {
-  if ((faces_of(axis()) & ~halo_end_) == 0)
+  if ((faces_of(axis()) & ~halo_ended()) == 0)
     finish_phase(after(main_));
   else
     wakes_at_ = kNever;
@@ -137,20 +150,21 @@ void NodeMachine::force() {
     wakes_at_ = phase_last_;
     return;
   }
-  clear_halos();
-  halo_end_ = 0;
+  if (last_round()) clear_halos();
+  halo_end_[round_ % 2] = 0;
   finish_phase(Main::update);
 }
 
 void NodeMachine::receive(int face, const Beat& beat) {
-  const bool migrating = migrating_ & bit(face);
+  uint8_t& stream = stream_[static_cast<size_t>(face)];
+  const bool migrating = stream == rounds();
   if (beat.end) {
-    (migrating ? migrate_end_ : halo_end_) |= bit(face);
+    (migrating ? migrate_end_ : halo_end_[stream % 2]) |= bit(face);
     if (!migrating) take_halo_end(face);
-    migrating_ ^= bit(face);
+    stream = migrating ? 0 : static_cast<uint8_t>(stream + 1);
     return;
   }
-  const int beats = migrating ? plan_.words.migrate_beats : plan_.words.halo_beats;
+  const int beats = migrating ? plan_.words.migrate_beats : plan_.rounds[stream].beats;
   const Bits* record = &beat.payload;
   if (beats > 1) {
     Assembly& a = assembly_[face];
@@ -165,7 +179,7 @@ void NodeMachine::receive(int face, const Beat& beat) {
     take_particle(face, *record);
   } else {
     ++halos_[static_cast<size_t>(face / 2)];
-    take_halo(face, *record);
+    take_halo(face, stream, *record);
   }
 }
 
@@ -227,7 +241,8 @@ std::string NodeMachine::doing() const {
   static const char* const kFace[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
   if (main_ == Main::idle) return "idle";
   if (main_ == Main::dump) return "dump";
-  std::string text = fmt::format("step {}, {}", step_, to_string(static_cast<Phase>(main_)));
+  const int phase = phase_index(static_cast<Phase>(main_), round_, rounds());
+  std::string text = fmt::format("step {}, {}", step_, phase_name(phase, rounds()));
   const auto faces = [&](uint8_t mask) {
     std::string list;
     for (int f = 0; f < kFaces; ++f)
@@ -235,7 +250,7 @@ std::string NodeMachine::doing() const {
     return list;
   };
   if (main_ <= Main::exchange_z && sent_)
-    return text + ": waits for the halo of" + faces(faces_of(axis()) & static_cast<uint8_t>(~halo_end_));
+    return text + ": waits for the halo of" + faces(faces_of(axis()) & static_cast<uint8_t>(~halo_ended()));
   if (const uint8_t mask = migrates() ? awaited() : uint8_t{0}; mask != 0)
     return text + ": waits for the particles of" + faces(mask);
   if (valid_ != 0) return text + ": waits for ready of" + faces(valid_);

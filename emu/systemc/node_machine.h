@@ -45,6 +45,14 @@ class NodeMachine : public NodeModel {
   static constexpr Fault along(Fault x, int axis) {
     return static_cast<Fault>(static_cast<int>(x) + 2 * axis);
   }
+  int rounds() const { return static_cast<int>(plan_.rounds.size()); }
+  bool last_round() const { return round_ + 1 == rounds(); }
+  // Of phase_start_o, phase_end_o.
+  uint32_t phase_bit(Main phase) const {
+    return 1u << phase_index(static_cast<Phase>(phase), round_, rounds());
+  }
+  // Faces whose halo stream of this round has ended.
+  uint8_t halo_ended() const { return halo_end_[round_ % 2]; }
   int axis() const { return static_cast<int>(main_) % 5; }  // exchange_* are 0...2, migrate_* are 5...7
   bool linked(int face) const { return has_link_ >> face & 1; }
   bool migrates() const { return main_ >= Main::migrate_x && main_ <= Main::migrate_z; }
@@ -87,7 +95,7 @@ class NodeMachine : public NodeModel {
   virtual void clear_halos() = 0;
   // A record that has come over a face in this cycle: a particle, or one of its halo.
   virtual void take_particle(int face, const Bits& record) = 0;
-  virtual void take_halo(int face, const Bits& record) = 0;
+  virtual void take_halo(int face, int round, const Bits& record) = 0;
   // The end beat of a face's halo stream has come in this cycle.
   virtual void take_halo_end(int) {}
   // Faces whose particles MIGRATE_a waits for, for doing().
@@ -99,7 +107,10 @@ class NodeMachine : public NodeModel {
   FaultKeeper fault_;
   std::unique_ptr<ForceMachine> engine_;
   Main main_ = Main::idle;
-  uint8_t halo_end_ = 0, migrate_end_ = 0;  // by face
+  int round_ = 0;
+  // By face; of halos by the round's parity, as a neighbour may be a round ahead.
+  std::array<uint8_t, 2> halo_end_{};
+  uint8_t migrate_end_ = 0;
   int beat_ = 0;                            // of `word_`, the record that is being sent
   Bits word_;
   bool sent_ = false;           // EXCHANGE_a has loaded its end beats
@@ -125,8 +136,9 @@ class NodeMachine : public NodeModel {
 
   const int link_words_;
   std::array<Assembly, kFaces> assembly_;
-  uint8_t migrating_ = 0;  // by face. Streams alternate: halo, migrate, halo, ...
-  uint8_t starting_ = 0;   // phases whose first cycle is the next one to run
+  // Of the stream that comes over a face: its round, or their number in a migration.
+  std::array<uint8_t, kFaces> stream_{};
+  uint32_t starting_ = 0;  // phases whose first cycle is the next one to run
   uint8_t valid_ = 0, can_load_ = 0;
   uint8_t full_ = 0;  // link registers that held a beat at the cycle's start
   uint32_t steps_ = 0, step_ = 0;

@@ -386,7 +386,7 @@ void ArrivalTiming::step(const CellSlots& slots, std::span<const Leaving> leavin
   for_all([&](uint32_t n) {
     if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
     count_records(n);
-    write_spans(spans, n, start_[n], end_, true, events_[n]);
+    write_spans(spans, n, start_[n], end_, 1, true, events_[n]);
     start_[n] = end_[at(Phase::migrate_z)][n] + 1;
   });
   ++steps_;

@@ -358,7 +358,7 @@ void BrickTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
   if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
   count_records(n);
   migration_.count(n, events_[n]);
-  write_spans(spans, n, start_[n], end_, plan_.arch.overlap, events_[n]);
+  write_spans(spans, n, start_[n], end_, 1, plan_.arch.overlap, events_[n]);
   start_[n] = end_[at(Phase::migrate_z)][n] + 1;
 }
 

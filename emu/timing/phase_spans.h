@@ -14,23 +14,25 @@
 
 namespace cuboct::emu {
 
-// A node's spans of a step that began in cycle `start`, from the last cycles of its phases,
-// `end[phase][node]`. With `overlap` the force engine begins with the step. Written to `spans`, of all nodes,
+// A node's spans of a step of `rounds` rounds that began in cycle `start`, from the last cycles of its phases,
+// `end[phase][node]`. With `overlap` the force engine begins with its round. Written to `spans`, of all nodes,
 // where there is room, and added to the node's events.
 inline void write_spans(std::span<PhaseSpan> spans, uint32_t node, int64_t start,
-                        const std::array<std::vector<int64_t>, kPhases>& end, bool overlap,
+                        std::span<const std::vector<int64_t>> end, int rounds, bool overlap,
                         MachineEvents& events) {
-  std::array<PhaseSpan, kPhases> span;
-  const auto begin = static_cast<uint64_t>(start);
+  const int phases = phases_of(rounds);
+  auto begin = static_cast<uint64_t>(start);  // of the round
   uint64_t next = begin;
-  for (size_t p = 0; p < kPhases; ++p) {
-    const auto last = static_cast<uint64_t>(end[p][node]);
-    span[p] = {p == static_cast<size_t>(Phase::force) && overlap ? begin : next, last};
-    events.phase_cycles[p] += last + 1 - span[p].start;
+  for (int p = 0; p < phases; ++p) {
+    const Phase kind = phase_at(p, rounds).kind;
+    if (kind == Phase::exchange_x) begin = next;
+    const auto last = static_cast<uint64_t>(end[static_cast<size_t>(p)][node]);
+    const PhaseSpan span{kind == Phase::force && overlap ? begin : next, last};
+    events.phase_cycles[static_cast<size_t>(kind)] += last + 1 - span.start;
     next = last + 1;
+    if (!spans.empty()) spans[size_t{node} * static_cast<size_t>(phases) + static_cast<size_t>(p)] = span;
   }
   ++events.steps;
-  if (!spans.empty()) std::ranges::copy(span, spans.begin() + std::ptrdiff_t{node} * kPhases);
 }
 
 }  // namespace cuboct::emu

@@ -31,8 +31,8 @@ struct TimingModel::Impl {
   Impl(const Plan& plan, int threads);
 
   void begin(const CellSlots& slots, std::span<const Leaving> leaving);
-  // One node's part of a step, pass by pass (take_particles once per axis): each pass needs of the neighbours
-  // what they did in the passes before.
+  // One node's part of a step, pass by pass (those up to the update once per round, take_particles once per
+  // axis): each pass needs of the neighbours what they did in the passes before.
   void send_x(uint32_t n);
   void exchange_x(const CellSlots& slots, uint32_t n);
   void exchange_y(uint32_t n);
@@ -40,6 +40,8 @@ struct TimingModel::Impl {
   void take_particles(int axis, uint32_t n);
   void finish(uint32_t n, std::span<PhaseSpan> spans);
 
+  int64_t beats() const { return plan_.rounds[at(round_)].beats; }  // of a record
+  int64_t& end_of(Phase phase, uint32_t n) { return end_[at(phase_index(phase, round_, rounds_))][n]; }
   void place(const CellSlots& slots, uint32_t n);
   bool still(uint32_t n) const;
   int64_t sent(int axis, uint32_t n, int64_t start, std::initializer_list<uint32_t> segments);
@@ -55,8 +57,9 @@ struct TimingModel::Impl {
   const uint32_t nodes_;
   const int axes_;
   const int threads_;
-  const int64_t halo_beats_, received_;
-  const ForceShape shape_;
+  const int rounds_;
+  const int64_t received_;
+  std::vector<ForceShape> shape_;  // by round
   const Filter filter_;
   std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
   const int64_t take_;                              // cycles of TAKE per particle
@@ -73,11 +76,13 @@ struct TimingModel::Impl {
   std::vector<uint8_t> moved_, moved_x_;   // ... or another position; there, or in a neighbour along x too
   std::vector<uint32_t> sent_y_, sent_z_;  // records that it sends along y, z
 
-  Cycles start_;                     // the step's first cycle
-  std::array<Cycles, kPhases> end_;  // the phases' last cycles
+  Cycles start_;             // the step's first cycle
+  int round_ = 0;            // that is looked at
+  Cycles begin_;             // its first cycle
+  std::vector<Cycles> end_;  // the phases' last cycles
   std::array<Cycles, 3> halo_end_, migrate_end_,
       migrate_start_;  // [axis] cycle that loads the end beat; first cycle
-  std::vector<NodeForce> force_;
+  std::vector<std::vector<NodeForce>> force_;  // by round, then node
   std::vector<MachineEvents> events_;
   std::vector<Scratch> scratch_;  // by thread
   uint64_t steps_ = 0;
@@ -89,10 +94,8 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       nodes_(plan.lattice.size()),
       axes_(plan.rule.axes),
       threads_(threads > 0 ? threads : usable_cores()),
-      halo_beats_(plan.words.halo_beats),
+      rounds_(static_cast<int>(plan.rounds.size())),
       received_(kReceived + plan.link.latency),
-      shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval,
-             plan.arch.narrow_memories ? plan.words.halo_beats : 0},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
       take_(plan.arch.narrow_memories ? plan.words.migrate_beats + 2 : 1),
@@ -109,7 +112,9 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       sent_y_(nodes_ + 1),
       sent_z_(nodes_ + 1),
       start_(nodes_ + 1),
-      force_(nodes_),
+      begin_(nodes_ + 1),
+      end_(static_cast<size_t>(phases_of(rounds_))),
+      force_(plan.rounds.size()),
       events_(nodes_) {
   neighbour_[nodes_].fill(nodes_);
   for (uint32_t n = 0; n < nodes_; ++n)
@@ -117,7 +122,11 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       const uint32_t other = plan.lattice.neighbour(n, f);
       neighbour_[n][at(f)] = other == kNoCell ? nodes_ : other;
     }
-  start_[nodes_] = kLongAgo;
+  start_[nodes_] = begin_[nodes_] = kLongAgo;
+  for (const PlanRound& round : plan.rounds)
+    shape_.push_back({plan.arch.queue_depth, round.pipe, plan.rule.axes, plan.latency.interval,
+                      plan.arch.narrow_memories ? round.beats : 0});
+  for (auto& nodes : force_) nodes.resize(nodes_);
   for (auto& cycles : end_) cycles.resize(nodes_);
   for (auto* beats : {&halo_end_, &migrate_end_, &migrate_start_})
     for (auto& cycles : *beats) cycles.assign(nodes_ + 1, kLongAgo);
@@ -175,7 +184,7 @@ int64_t TimingModel::Impl::sent(int axis, uint32_t n, int64_t start,
   int64_t now = start;
   const uint8_t faces = faces_along(axis);
   for (const uint32_t records : segments)
-    now = records == 0 ? now + 1 : links_.load(n, faces, now, records * halo_beats_) + 1;
+    now = records == 0 || beats() == 0 ? now + 1 : links_.load(n, faces, now, records * beats()) + 1;
   return links_.load(n, faces, now, 1);
 }
 
@@ -192,20 +201,20 @@ int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
       {halo_end_[at(axis)][n] + kSent, ended(halo_end_, axis, n, 0), ended(halo_end_, axis, n, 1)});
 }
 
-void TimingModel::Impl::send_x(uint32_t n) { halo_end_[0][n] = sent(0, n, start_[n], {count_[n]}); }
+void TimingModel::Impl::send_x(uint32_t n) { halo_end_[0][n] = sent(0, n, begin_[n], {count_[n]}); }
 
 void TimingModel::Impl::exchange_x(const CellSlots& slots, uint32_t n) {
-  place(slots, n);
+  if (round_ == 0) place(slots, n);
   const uint32_t own = count_[n], low = neighbour_[n][0], high = neighbour_[n][1];
   sent_y_[n] = own + count_[low] + count_[high];
-  const int64_t end = end_[at(Phase::exchange_x)][n] = exchanged(0, n);
+  const int64_t end = end_of(Phase::exchange_x, n) = exchanged(0, n);
   halo_end_[1][n] = sent(1, n, end + 1, {own, count_[low], count_[high]});
 }
 
 void TimingModel::Impl::exchange_y(uint32_t n) {
   const auto& near = neighbour_[n];
   moved_x_[n] = moved_[n] | moved_[near[0]] | moved_[near[1]];
-  const int64_t end = end_[at(Phase::exchange_y)][n] = exchanged(1, n);
+  const int64_t end = end_of(Phase::exchange_y, n) = exchanged(1, n);
   if (axes_ == 2) return;
   sent_z_[n] = sent_y_[n] + sent_y_[near[2]] + sent_y_[near[3]];
   halo_end_[2][n] =
@@ -221,23 +230,24 @@ bool TimingModel::Impl::still(uint32_t n) const {
 }
 
 int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
-  const int64_t begin = plan_.arch.overlap ? start_[n] : end_[at(Phase::exchange_z)][n] + 1;
+  const int64_t begin = plan_.arch.overlap ? begin_[n] : end_of(Phase::exchange_z, n) + 1;
   Available available;
-  for (size_t a = 0; a < 3; ++a) available[a] = end_[a][n] + 1 - begin;
+  for (int a = 0; a < 3; ++a) available[at(a)] = end_of(static_cast<Phase>(a), n) + 1 - begin;
   if (count_[n] == 0) return begin + idle_force_time(available, axes_);
   const Places places{{x_[0].data(), x_[1].data(), x_[2].data()}, first_.data(), neighbour_.data()};
-  return begin + force_[n].time(filter_, places, n, shape_, available, still(n), scratch.hits,
+  return begin + force_[at(round_)][n].time(filter_, places, n, shape_[at(round_)], available, still(n), scratch.hits,
                                 scratch.counters, events_[n]);
 }
 
 // Where an axis does not exist its phases end with those before them.
 void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
-  end_[at(Phase::exchange_z)][n] = axes_ == 3 ? exchanged(2, n) : end_[at(Phase::exchange_y)][n];
-  const int64_t force_end = end_[at(Phase::force)][n] = force(n, scratch);
+  end_of(Phase::exchange_z, n) = axes_ == 3 ? exchanged(2, n) : end_of(Phase::exchange_y, n);
+  const int64_t force_end = end_of(Phase::force, n) = force(n, scratch);
   const int64_t update =
-      count_[n] == 0 ? 1 : (int64_t{count_[n]} - 1) * plan_.latency.stride + plan_.latency.update;
-  const int64_t end = end_[at(Phase::update)][n] = force_end + update;
-  send_particles(0, n, end + 1);
+      count_[n] == 0 ? 1 : (int64_t{count_[n]} - 1) * plan_.latency.stride + plan_.rounds[at(round_)].finish;
+  const int64_t end = end_of(Phase::update, n) = force_end + update;
+  begin_[n] = end + 1;
+  if (round_ + 1 == rounds_) send_particles(0, n, end + 1);
 }
 
 void TimingModel::Impl::send_particles(int axis, uint32_t n, int64_t start) {
@@ -276,7 +286,7 @@ int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) co
 void TimingModel::Impl::take_particles(int axis, uint32_t n) {
   const int64_t low = taken(axis, n, 0, migrate_end_[at(axis)][n] + 1);
   const int64_t next = taken(axis, n, 1, low);
-  end_[at(Phase::migrate_x) + at(axis)][n] = next - 1;
+  end_of(static_cast<Phase>(static_cast<int>(Phase::migrate_x) + axis), n) = next - 1;
   if (axis + 1 < axes_) send_particles(axis + 1, n, next);
 }
 
@@ -285,24 +295,29 @@ void TimingModel::Impl::count_records(uint32_t n) {
   MachineEvents& events = events_[n];
   for (int axis = 0; axis < axes_; ++axis) {
     const std::vector<uint32_t>& sent = axis == 0 ? count_ : axis == 1 ? sent_y_ : sent_z_;
-    events.relayed += sent[n];
-    events.relayed_own += count_[n];
+    for (const PlanRound& round : plan_.rounds) {
+      if (round.beats == 0) continue;
+      events.relayed += sent[n];
+      events.relayed_own += count_[n];
+    }
     for (int face = 2 * axis; face < 2 * axis + 2; ++face) {
       const uint32_t near = neighbour_[n][at(face)];
       if (near == nodes_) continue;
-      halos_along(events, axis) += sent[near];
-      // And the end beats, of records and of particles.
-      events.beats += sent[n] * static_cast<uint64_t>(halo_beats_) + 2;
+      ++events.beats;  // the end of the particles
+      for (const PlanRound& round : plan_.rounds) {
+        if (round.beats > 0) halos_along(events, axis) += sent[near];
+        events.beats += sent[n] * static_cast<uint64_t>(round.beats) + 1;
+      }
     }
   }
 }
 
 void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
-  events_[n].updates += count_[n];
+  events_[n].updates += count_[n] * static_cast<uint64_t>(rounds_);
   count_records(n);
   migration_.count(n, axes_, events_[n]);
-  write_spans(spans, n, start_[n], end_, plan_.arch.overlap, events_[n]);
-  start_[n] = end_[at(Phase::migrate_z)][n] + 1;
+  write_spans(spans, n, start_[n], end_, rounds_, plan_.arch.overlap, events_[n]);
+  start_[n] = end_of(Phase::migrate_z, n) + 1;
 }
 
 TimingModel::TimingModel(const Plan& plan, int threads) {
@@ -319,7 +334,7 @@ void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving,
   if (brick_) return brick_->step(slots, leaving, spans);
   if (arrival_) return arrival_->step(slots, leaving, spans);
   Impl& m = *impl_;
-  if (!spans.empty() && spans.size() != size_t{m.nodes_} * kPhases)
+  if (!spans.empty() && spans.size() != size_t{m.nodes_} * m.end_.size())
     throw std::invalid_argument("spans of another lattice");
   m.begin(slots, leaving);
   const auto nodes = static_cast<int64_t>(m.nodes_);
@@ -333,19 +348,23 @@ void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving,
     };
     for_each_range(m.nodes_, 1, range, threads);
   };
-  for_all([&](uint32_t n) { m.send_x(n); });
-  for_all([&](uint32_t n) { m.exchange_x(slots, n); });
-  for_all([&](uint32_t n) { m.exchange_y(n); });
-  for_each_part(static_cast<size_t>((nodes + share - 1) / share), threads, [&](size_t k, int member) {
-    const auto first = static_cast<int64_t>(k) * share;
-    for (int64_t n = first; n < std::min(nodes, first + share); ++n)
-      m.exchange_z_to_update(static_cast<uint32_t>(n), m.scratch_[at(member)]);
-  });
+  std::copy(m.start_.begin(), m.start_.end(), m.begin_.begin());
+  for (m.round_ = 0;; ++m.round_) {
+    for_all([&](uint32_t n) { m.send_x(n); });
+    for_all([&](uint32_t n) { m.exchange_x(slots, n); });
+    for_all([&](uint32_t n) { m.exchange_y(n); });
+    for_each_part(static_cast<size_t>((nodes + share - 1) / share), threads, [&](size_t k, int member) {
+      const auto first = static_cast<int64_t>(k) * share;
+      for (int64_t n = first; n < std::min(nodes, first + share); ++n)
+        m.exchange_z_to_update(static_cast<uint32_t>(n), m.scratch_[at(member)]);
+    });
+    if (m.round_ + 1 == m.rounds_) break;
+  }
   const int last = m.axes_ - 1;
   for (int axis = 0; axis < last; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
   for_all([&](uint32_t n) {
     m.take_particles(last, n);
-    if (last < 2) m.end_[at(Phase::migrate_z)][n] = m.end_[at(Phase::migrate_y)][n];
+    if (last < 2) m.end_of(Phase::migrate_z, n) = m.end_of(Phase::migrate_y, n);
     m.finish(n, spans);
   });
   ++m.steps_;

@@ -29,7 +29,7 @@ class TimingModel {
   TimingModel& operator=(const TimingModel&) = delete;
 
   // The next step: `slots` are the particles at its start by cell of the lattice, `leaving` those that leave
-  // their cell in it, in any order. The step must be one that ends without a fault. spans[node * kPhases +
+  // their cell in it, in any order. The step must be one that ends without a fault. spans[node * phases +
   // phase], of physical nodes, gets first and last cycle, cycle 0 being the first of the run; empty where
   // nobody wants them. Throws std::invalid_argument, and is of no use after, where sizes do not fit the plan,
   // a cell holds more than its capacity or not what the step before left there, or a particle leaves the

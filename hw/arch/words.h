@@ -12,6 +12,10 @@
 
 namespace cuboct {
 
+namespace graph {
+struct FixedProgram;
+}
+
 enum class FieldKind : uint8_t {
   position,  // the P visible bits, which forces and links see
   away,      // cells still to go along the axis: -1, 0, +1
@@ -20,6 +24,7 @@ enum class FieldKind : uint8_t {
   id,
   residue,       // the G bits of the position below the visible ones
   displacement,  // P+G fractional bits; of particles held by force
+  field,         // a number that a rule of text keeps of a particle
   cell           // with bricks: as hw/arch/bricks.h numbers it
 };
 
@@ -28,6 +33,7 @@ struct WordField {
   int axis;  // 0, 1, 2; -1 where there is one for all
   int lsb, bits;
   bool is_signed;  // two's complement
+  int number = 0;  // of a field: which of FixedProgram::numbers()
   bool operator==(const WordField&) const = default;
 };
 // "x_y": the position along y; "id".
@@ -45,6 +51,9 @@ struct Words {
   // Coordinates in the sender's frame: all but the last axis signed. With bricks those in the record's own
   // cell, unsigned, and which cell that is.
   WordLayout halo;
+  // Of a rule of several rounds: what the records of later ones hold, fields alone, in the order of the first
+  // round's records. One may be empty: its stream is an end beat.
+  std::vector<WordLayout> later;
   int id_bits = 0;
   int halo_bits = 0;
   int particle_bits = 0;
@@ -52,9 +61,11 @@ struct Words {
   int migrate_beats = 0;                          // ceil(migrate_bits / link_bits)
   int migrate_bits = 0;                           // a particle, and with bricks the cell that it goes to
   int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
-  int link_bits = 0;                              // as built: arch.link_bits, or halo_bits
+  int link_bits = 0;                              // as built: arch.link_bits, or the widest of all rounds' records
 };
 
-Words words_of(const FixedRule& rule, const Arch& arch, uint32_t particles);
+// `program`: of a rule of text; null: the pair law.
+Words words_of(const FixedRule& rule, const Arch& arch, uint32_t particles,
+               const graph::FixedProgram* program = nullptr);
 
 }  // namespace cuboct

@@ -34,6 +34,7 @@ EngineKind fixed_kind(const std::string& name, const Scene& scene, const Plan& p
   kind.name = name;
   kind.plan_hash = plan.hash;
   kind.nodes = plan.nodes();
+  kind.rounds = static_cast<int>(plan.rounds.size());
   kind.particles = plan.particles;
   kind.displaced = plan.rule.pd;
   kind.table_error = plan.rule.error().worst_force;

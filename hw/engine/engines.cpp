@@ -32,6 +32,7 @@ const std::vector<EngineRow>& engines() {
        .ranks = "cuboct-lattice",
        .cost = {3e-9, 1.5e-9, true, 320, 3.5, 70}},
       {.name = "systemc",
+       .text = true,
        .links = true,
        .cycles = true,
        .unsaved = kNeverStands,

@@ -42,12 +42,13 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
 }
 
 Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine, bool real) {
-  if (!real && runs_text(scene, engine)) return program_plan_of(scene, arch);
-  if (scene.rule.rounds != nullptr) return real_plan_of(scene, arch);
   const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
+  const CellForm form = row != nullptr && row->any_cells ? CellForm::any : CellForm::cubes;
+  if (!real && runs_text(scene, engine)) return program_plan_of(scene, arch, form);
+  if (scene.rule.rounds != nullptr) return real_plan_of(scene, arch);
   const bool doubles = row != nullptr && row->here == Here::reference;
   try {
-    return plan_of(scene, arch, row != nullptr && row->any_cells ? CellForm::any : CellForm::cubes);
+    return plan_of(scene, arch, form);
   } catch (const InputError&) {
     if (!doubles || formats_hold(scene, arch)) throw;
     return real_plan_of(scene, arch);

@@ -11,6 +11,7 @@
 #include "hw/cost/pair_work.h"
 #include "model/base/hash.h"
 #include "model/base/integer_math.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 namespace {
@@ -207,10 +208,15 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
 
   plan.words = words_of(plan.rule, plan.arch, particles);
   plan.latency = latency_of(plan.rule, plan.arch);
+  plan.rounds = {{plan.words.halo, plan.words.halo_beats, plan.latency.pipe, plan.latency.update}};
   plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
   plan.cut = cut_links(plan.lattice, plan.bricks, plan.arch.boards);
   plan.hash = hash_of(plan);
   return plan;
+}
+
+size_t spans_of_step(const Plan& plan) {
+  return size_t{plan.nodes()} * static_cast<size_t>(phases_of(static_cast<int>(plan.rounds.size())));
 }
 
 std::string describe(const Plan& plan) {

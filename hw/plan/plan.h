@@ -37,6 +37,14 @@ struct Latency {
   int product = 1;   // of the pipe's multipliers; 2 with registers on both sides, more where they are serial
 };
 
+// What a round of the rule asks of a node. The pair law has one.
+struct PlanRound {
+  WordLayout record;  // of a halo: of the first round Words::halo, of a later one its fields alone
+  int beats = 0;      // of it; 0 where nothing is sent
+  int pipe = 0;       // from a pair's issue to its sum
+  int finish = 0;     // from a particle's read to the cycle in which its result may be read
+};
+
 struct Plan {
   FixedRule rule;
   Arch arch;                   // as built: nothing in it is automatic
@@ -45,6 +53,7 @@ struct Plan {
   Vec3 origin = Vec3::Zero();  // m, lower corner of cell (0,0,0)
   Words words;
   Latency latency;
+  std::vector<PlanRound> rounds;  // one at least
   LinkCode link;
   std::vector<uint8_t> cut;  // by node, bit f: the link over face f leads to another device; empty on one
   uint32_t particles = 0;
@@ -81,6 +90,14 @@ uint64_t bounding_cells(const Lattice& lattice);
 // Derives words, latency and hash. Throws InputError where the arch cannot work (a capacity below 1, narrow
 // memories with more than one lane or pipe, or with overlap, ...).
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles);
+
+// Gives the plan the words, rounds and latencies of `program`, which it keeps, and the hash that follows.
+void set_program(Plan& plan, std::shared_ptr<const IntegerProgram> program);
+// Why the machine that the plan describes does not run its rule: one line for people. Empty where it does.
+std::string machine_refusal(const Plan& plan);
+
+// Phase spans of a step of the machine: of all its nodes.
+size_t spans_of_step(const Plan& plan);
 
 // The plan as text, for people and for diffs; no dates, no addresses.
 std::string describe(const Plan& plan);

@@ -168,21 +168,13 @@ const RuleProgram* text_of(const Rule& rule) {
 }
 
 void add_program(const RuleProgram& text, const Scene& scene, const Body& begin, Plan& plan) {
-  plan.program = std::make_shared<IntegerProgram>(integer_program(
-      text, plan.rule, plan.arch.capacity, starts_of(text, scene.rule, begin, scene.periodic)));
+  set_program(plan, std::make_shared<IntegerProgram>(integer_program(
+                        text, plan.rule, plan.arch.capacity,
+                        starts_of(text, scene.rule, begin, scene.periodic))));
   const std::string certificate = graph::certificate_of(plan.program->program);
   if (const graph::Refusal refusal = graph::refusal_of(certificate); refusal.line != 0)
     throw std::logic_error(
         fmt::format("line {} of the program's certificate: {}", refusal.line, refusal.what));
-  Hash hash;
-  hash.add(static_cast<int64_t>(plan.hash));
-  for (const char c : certificate) hash.add(c);
-  if (const graph::BondRows* rows = plan.program->rows.get()) {
-    for (const uint32_t other : rows->other) hash.add(other);
-    for (const uint32_t kind : rows->kind) hash.add(kind);
-    for (const int64_t constant : rows->constants) hash.add(constant);
-  }
-  plan.hash = hash.value();
 }
 
 // `see` is given each particle of the initial state once, in the order of ids.
@@ -300,10 +292,10 @@ Plan plan_of(const Scene& scene, const Arch& arch, CellForm form) {
   return with_places(scene, arch, [&] { return plan_with(scene, arch, form, [](const Particle&) {}); });
 }
 
-Plan program_plan_of(const Scene& scene, const Arch& arch) {
+Plan program_plan_of(const Scene& scene, const Arch& arch, CellForm form) {
   return with_places(scene, arch, [&] {
     return plan_with(
-        scene, arch, CellForm::any, [](const Particle&) {}, true);
+        scene, arch, form, [](const Particle&) {}, true);
   });
 }
 

@@ -44,8 +44,8 @@ Arch settled(const Scene& scene, Arch arch);
 // The same plan and errors, without a State in memory.
 Plan plan_of(const Scene& scene, const Arch& arch, CellForm form = CellForm::cubes);
 
-// Of a rule that is text too: Plan::program has it in integers. No machine is made of such a plan yet.
-Plan program_plan_of(const Scene& scene, const Arch& arch);
+// Of a rule that is text too: Plan::program has it in integers.
+Plan program_plan_of(const Scene& scene, const Arch& arch, CellForm form = CellForm::any);
 
 // The plan and the state with which a run goes on from `now`, a state of `before`, under constraints or
 // gravity that have changed: formats, cells and origin stay, so `now` is kept to the last bit. `scene` has

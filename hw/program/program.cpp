@@ -89,7 +89,7 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   const CellForm form = program.abilities.any_cells ? CellForm::any : CellForm::cubes;
   const Plan plan = !text                         ? plan_of(scene, arch, form)
                     : program.abilities.real_text ? real_plan_of(scene, arch)
-                                                  : program_plan_of(scene, arch);
+                                                  : program_plan_of(scene, arch, form);
   settle(program, parsed, scene);
 
   std::optional<TraceWriter> writer;

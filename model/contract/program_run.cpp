@@ -12,8 +12,6 @@ using graph::Node;
 using graph::Op;
 using graph::Source;
 
-constexpr size_t kPairRoom = 128;  // lanes: the values of a pair law stay in the nearest cache
-
 size_t at(int k) { return static_cast<size_t>(k); }
 
 // What is the same for all pairs of a particle, and for a particle alone.
@@ -88,14 +86,15 @@ bool is_broken(const FixedProgram& program, const Seen& bond) {
   return block.values(program.broken_at)[0] != 0;
 }
 
-PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_t step)
+PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_t step, size_t room)
     : program_(program),
       round_(round),
       graph_(round.pair),
       step_(step),
+      room_(room),
       when_(round.when),
       terms_(terms_of(round)),
-      block_(round.pair, kPairRoom) {
+      block_(round.pair, room) {
   std::vector<bool> early(graph_.nodes.size()), kept(graph_.nodes.size());
   for (const int n : needed_by(graph_, {when_})) {
     early[at(n)] = true;
@@ -115,8 +114,9 @@ PairRun::PairRun(const FixedProgram& program, const graph::Round& round, uint64_
 
 void PairRun::add(const Seen& own, std::span<const Seen> partners, std::span<int64_t> sums) {
   faults_.clear();
-  for (size_t k = 0; k < partners.size(); k += kPairRoom)
-    add_block(own, partners.subspan(k, std::min(kPairRoom, partners.size() - k)), sums);
+  counted_ = 0;
+  for (size_t k = 0; k < partners.size(); k += room_)
+    add_block(own, partners.subspan(k, std::min(room_, partners.size() - k)), sums);
 }
 
 void PairRun::fill(const std::vector<int>& inputs, const Seen& own, std::span<const Seen> partners,
@@ -139,6 +139,7 @@ void PairRun::add_block(const Seen& own, std::span<const Seen> partners, std::sp
   chosen_.clear();
   for (uint32_t k = 0; k < partners.size(); ++k)
     if (when[k] && partners[k].particle != own.particle) chosen_.push_back(k);
+  counted_ += chosen_.size();
   if (chosen_.empty()) return;
   block_.compress(kept_, chosen_);
   fill(late_inputs_, own, partners, chosen_);
@@ -156,12 +157,12 @@ void PairRun::add_block(const Seen& own, std::span<const Seen> partners, std::sp
   faults_.insert(faults_.end(), block_.faults().begin(), block_.faults().end());
 }
 
-FinishRun::FinishRun(const FixedProgram& program, const graph::Round& round, uint64_t step)
+FinishRun::FinishRun(const FixedProgram& program, const graph::Round& round, uint64_t step, size_t room)
     : program_(program),
       round_(round),
       step_(step),
       nodes_(needed_by(round.finish, finish_outputs(program, round))),
-      block_(round.finish, kRoom) {}
+      block_(round.finish, room) {}
 
 void FinishRun::run(std::span<const Seen> particles, std::span<const int64_t> sums) {
   for (const int n : nodes_) {

@@ -28,12 +28,18 @@ bool is_broken(const graph::FixedProgram& program, const Seen& bond);
 // that count then move together, and the rest is computed of these.
 class PairRun {
  public:
-  PairRun(const graph::FixedProgram& program, const graph::Round& round, uint64_t step);
+  // The values of a pair law stay in the nearest cache.
+  static constexpr size_t kPairRoom = 128;
+  // `room`: pairs that are computed together.
+  PairRun(const graph::FixedProgram& program, const graph::Round& round, uint64_t step,
+          size_t room = kPairRoom);
+  void at_step(uint64_t step) { step_ = step; }
 
   // Adds the terms of all partners, but of `own` itself, to `sums`: all components of all sums. Writes what
   // the round makes of their bonds.
   void add(const Seen& own, std::span<const Seen> partners, std::span<int64_t> sums);
-  // Of the last add(): of each pair its first fault.
+  // Of the last add(): the pairs that counted; of each pair its first fault.
+  uint64_t counted() const { return counted_; }
   const std::vector<graph::LaneFault>& faults() const { return faults_; }
 
  private:
@@ -45,22 +51,26 @@ class PairRun {
   const graph::Round& round_;
   const graph::Graph& graph_;
   uint64_t step_;
+  size_t room_;
   int when_;
   std::vector<int> terms_;
   // Nodes that `when` needs, and those that the terms need besides; inputs apart. What both need is kept.
   std::vector<int> early_inputs_, early_, late_inputs_, late_, kept_;
   graph::Block<int64_t> block_;
   std::vector<uint32_t> chosen_;
+  uint64_t counted_ = 0;
   std::vector<graph::LaneFault> faults_;
 };
 
 // The finish of one particle after another, as lanes.
 class FinishRun {
  public:
-  FinishRun(const graph::FixedProgram& program, const graph::Round& round, uint64_t step);
-
   static constexpr size_t kRoom = 64;
-  // At most kRoom particles; `sums` has all components of each in turn.
+  FinishRun(const graph::FixedProgram& program, const graph::Round& round, uint64_t step,
+            size_t room = kRoom);
+  void at_step(uint64_t step) { step_ = step; }
+
+  // At most `room` particles; `sums` has all components of each in turn.
   void run(std::span<const Seen> particles, std::span<const int64_t> sums);
   int64_t value(int node, size_t lane) { return block_.values(node)[lane]; }
   const std::vector<graph::LaneFault>& faults() const { return block_.faults(); }

@@ -17,6 +17,13 @@ uint64_t hash_of(const Lattice& lattice, const Particle& particle) {
   return hash.value();
 }
 
+uint64_t hash_of(const Lattice& lattice, const Particle& particle, std::span<const int64_t> fields) {
+  Hash hash;
+  hash.resume(hash_of(lattice, particle));
+  for (const int64_t number : fields) hash.add(number);
+  return hash.value();
+}
+
 uint64_t hash_of(const Lattice& lattice, const State& state) {
   uint64_t sum = 0;
   const size_t fields = state.fields.size() / std::max<size_t>(1, state.particles.size());

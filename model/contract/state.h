@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "model/contract/fixed_rule.h"
@@ -39,6 +40,8 @@ struct State {
 // are any, fields and what its bonds keep: independent of order, so that threads, ranks and GPUs can add up
 // their shares.
 uint64_t hash_of(const Lattice& lattice, const Particle& particle);
+// With its numbers of State::fields.
+uint64_t hash_of(const Lattice& lattice, const Particle& particle, std::span<const int64_t> fields);
 uint64_t hash_of(const Lattice& lattice, const State& state);
 
 // Sum of v over the particles, P+G fractional bits; where masses differ, of v times the mass over the

@@ -33,7 +33,7 @@ using Notes = std::vector<std::pair<std::string, std::string>>;
 
 // What a checkpoint keeps of an engine besides its particles.
 struct EngineMemory {
-  std::vector<uint64_t> counters;  // of all runs so far
+  std::vector<uint64_t> counters;  // of all runs so far; of a rule of text its nodes' clocks
   std::vector<uint64_t> own;       // what the engine alone reads: its nodes' clocks, its machine's memory
 };
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "model/contract/golden.h"
 #include "model/run/engine.h"
@@ -23,6 +24,10 @@ class IntegerEngine {
   // Particles by cell, then slot.
   virtual void for_each_slot(const std::function<void(const Particle&)>& see) const = 0;
   virtual Counters counters() const { return {}; }
+  virtual std::vector<PhaseSpan> phase_times() { return {}; }
+  // Of an engine that counts cycles: by node those at which its next step begins, for a checkpoint.
+  virtual std::vector<uint64_t> clocks() const { return {}; }
+  virtual std::optional<double> seconds() const { return std::nullopt; }
   // As Engine's: of processes that share a scene one has the whole state, the others an empty one.
   virtual bool leads() const { return true; }
   virtual std::pair<bool, bool> agreed(bool stop, bool save) { return {stop, save}; }

@@ -92,7 +92,7 @@ void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   look();
 }
 
-EngineMemory IntegerRun::memory() { return {{}, program_memory(program_->state())}; }
+EngineMemory IntegerRun::memory() { return {program_->clocks(), program_memory(program_->state())}; }
 
 Momentum IntegerRun::momentum() {
   return {cuboct::momentum(setting_.fixed, program_->state()), RoundsRun::momentum().real};

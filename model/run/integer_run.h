@@ -31,6 +31,8 @@ class IntegerRun final : public RoundsRun {
   Momentum momentum() override;
   double largest_speed() override;
   Counters counters() override { return program_->counters(); }
+  std::vector<PhaseSpan> phase_times() override { return program_->phase_times(); }
+  std::optional<double> seconds() override { return program_->seconds(); }
   Counters counters_of_state() override;
   Notes notes() override;
   RunState integers() override { return program_->state(); }

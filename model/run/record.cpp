@@ -133,6 +133,7 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
   trace_.engine = kind.name;
   trace_.plan_hash = kind.plan_hash;
   trace_.nodes = kind.nodes;
+  trace_.rounds = kind.rounds;
   trace_.hash_every = hashed() ? request.hash_every : 1;
 }
 

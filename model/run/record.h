@@ -55,6 +55,7 @@ struct RunRequest {
 struct EngineKind {
   std::string name;  // Trace::engine
   uint64_t plan_hash = 0, nodes = 0, particles = 0;
+  int rounds = 1;           // of the rule, as phase times count them
   bool fixed = true;        // or in real numbers
   bool floats = false;      // in real numbers: of 32 bits
   bool displaced = false;   // the rule holds particles by force: their displacements count

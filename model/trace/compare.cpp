@@ -40,10 +40,10 @@ std::optional<Mismatch> compare_cycles(const Trace& a, const Trace& b) {
   if (a.cycles.empty() || b.cycles.empty()) return std::nullopt;
   const auto at = [&](size_t i, const char* edge, uint64_t value_a, uint64_t value_b) {
     Mismatch mismatch = found(Mismatch::Kind::cycles, std::to_string(value_a), std::to_string(value_b));
-    mismatch.step = i / kPhases / a.nodes;
-    mismatch.node = static_cast<uint32_t>(i / kPhases % a.nodes);
+    mismatch.step = i / a.phases() / a.nodes;
+    mismatch.node = static_cast<uint32_t>(i / a.phases() % a.nodes);
     mismatch.nodes = a.nodes;
-    mismatch.field = fmt::format("{} {}", to_string(static_cast<Phase>(i % kPhases)), edge);
+    mismatch.field = fmt::format("{} {}", phase_name(static_cast<int>(i % a.phases()), a.rounds), edge);
     return mismatch;
   };
   for (size_t i = 0; i < std::min(a.cycles.size(), b.cycles.size()); ++i) {
@@ -53,7 +53,7 @@ std::optional<Mismatch> compare_cycles(const Trace& a, const Trace& b) {
   if (a.cycles.size() != b.cycles.size()) {
     Mismatch mismatch = found(Mismatch::Kind::cycles, fmt::format("{} phase times", a.cycles.size()),
                               fmt::format("{} phase times", b.cycles.size()));
-    mismatch.step = std::min(a.cycles.size(), b.cycles.size()) / kPhases / std::max<uint64_t>(a.nodes, 1);
+    mismatch.step = std::min(a.cycles.size(), b.cycles.size()) / a.phases() / std::max<uint64_t>(a.nodes, 1);
     mismatch.field = "number";
     return mismatch;
   }

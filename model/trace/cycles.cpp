@@ -6,7 +6,7 @@
 namespace cuboct {
 
 std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
-  const size_t row = trace.nodes * kPhases;
+  const size_t row = trace.nodes * trace.phases();
   if (trace.cycles.empty() || row == 0) return std::nullopt;
   CyclesPerStep result;
   uint64_t before = 0;
@@ -21,16 +21,16 @@ std::optional<CyclesPerStep> cycles_per_step(const Trace& trace) {
   return result;
 }
 
-std::array<PhaseCycles, kPhases> cycles_per_phase(const Trace& trace) {
-  std::array<PhaseCycles, kPhases> all;
+std::vector<PhaseCycles> cycles_per_phase(const Trace& trace) {
+  std::vector<PhaseCycles> all(trace.phases());
   for (size_t k = 0; k < trace.cycles.size(); ++k) {
     // An empty span ends before it starts.
     const uint64_t length = trace.cycles[k].end + 1 - trace.cycles[k].start;
-    PhaseCycles& phase = all[k % kPhases];
+    PhaseCycles& phase = all[k % all.size()];
     phase.mean += static_cast<double>(length);
     phase.most = std::max(phase.most, length);
   }
-  const double rows = static_cast<double>(trace.cycles.size()) / kPhases;
+  const double rows = static_cast<double>(trace.cycles.size()) / static_cast<double>(all.size());
   for (PhaseCycles& phase : all)
     if (rows > 0) phase.mean /= rows;
   return all;

@@ -2,8 +2,8 @@
 // What the phase times of a trace amount to.
 #pragma once
 
-#include <array>
 #include <optional>
+#include <vector>
 
 #include "model/trace/trace.h"
 
@@ -21,6 +21,6 @@ struct PhaseCycles {
   double mean = 0;
   uint64_t most = 0;
 };
-std::array<PhaseCycles, kPhases> cycles_per_phase(const Trace& trace);
+std::vector<PhaseCycles> cycles_per_phase(const Trace& trace);
 
 }  // namespace cuboct

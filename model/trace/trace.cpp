@@ -378,13 +378,14 @@ void write_cycles(const Writer& out, const Trace& trace) {
   std::vector<uint64_t> flat;
   flat.reserve(2 * trace.cycles.size());
   for (const PhaseSpan& span : trace.cycles) flat.insert(flat.end(), {span.start, span.end});
-  const hsize_t row = std::max<hsize_t>(trace.nodes, 1) * kPhases;
+  const hsize_t phases = trace.phases(), row = std::max<hsize_t>(trace.nodes, 1) * phases;
+  std::string names;
+  for (int p = 0; p < phases_of(trace.rounds); ++p) names += ' ' + phase_name(p, trace.rounds);
   if (trace.cycles.size() % row != 0)
     throw std::logic_error("a trace's cycles are not steps x nodes x phases");
   out.array(
-      out.root(), "cycles", {trace.cycles.size() / row, row / kPhases, hsize_t{kPhases}, 2}, flat, "cycle",
-      "[step][node][phase][start, end]; phases: exchange_x exchange_y exchange_z force update migrate_x "
-      "migrate_y migrate_z");
+      out.root(), "cycles", {trace.cycles.size() / row, row / phases, phases, 2}, flat, "cycle",
+      "[step][node][phase][start, end]; phases:" + names);
 }
 
 }  // namespace
@@ -393,6 +394,12 @@ const char* to_string(Phase phase) {
   constexpr const char* kNames[] = {"exchange_x", "exchange_y", "exchange_z", "force",
                                     "update",     "migrate_x",  "migrate_y",  "migrate_z"};
   return name_in(kNames, phase);
+}
+
+std::string phase_name(int index, int rounds) {
+  const auto [kind, round] = phase_at(index, rounds);
+  const bool of_round = rounds > 1 && static_cast<int>(kind) < kRoundPhases;
+  return of_round ? fmt::format("{} {}", to_string(kind), round + 1) : to_string(kind);
 }
 
 const char* Trace::ended() const {
@@ -483,6 +490,7 @@ void TraceWriter::finish(const Trace& trace) {
     out.text(out.root(), "engine", trace.engine);
     out.text(out.root(), "plan_hash", fmt::format("{:016x}", trace.plan_hash));
     out.number<uint64_t>(out.root(), "nodes", trace.nodes);
+    if (trace.rounds > 1) out.number<int>(out.root(), "rounds", trace.rounds);
     out.number<double>(out.root(), "seconds", trace.seconds);
     out.number<uint64_t>(out.root(), "steps", trace.steps());
     out.number<uint64_t>(out.root(), "hash_every", trace.hash_every);
@@ -572,7 +580,9 @@ Trace read_rest(const Reader& in) {
   if (in.has_attribute(in.root(), "steps_asked")) trace.asked = in.number<uint64_t>(in.root(), "steps_asked");
   trace.curves = read_curves(in);
   if (in.has(in.root(), "cycles")) {
-    const auto flat = in.array<uint64_t>(in.root(), "cycles", {trace.nodes, hsize_t{kPhases}, 2});
+    if (in.has_attribute(in.root(), "rounds")) trace.rounds = in.number<int>(in.root(), "rounds");
+    in.same_length(trace.rounds >= 1 && trace.rounds <= kMostRounds, "rounds");
+    const auto flat = in.array<uint64_t>(in.root(), "cycles", {trace.nodes, hsize_t{trace.phases()}, 2});
     for (size_t i = 0; i < flat.size(); i += 2) trace.cycles.push_back({flat[i], flat[i + 1]});
   }
   const Handle counters = in.group(in.root(), "counters");

@@ -26,6 +26,25 @@ enum class Phase : uint8_t {
 };
 inline constexpr int kPhases = 8;
 const char* to_string(Phase phase);
+// Of a rule of several rounds, those before the migrations: they are there once in each round.
+inline constexpr int kRoundPhases = 5, kMostRounds = 5;
+constexpr int phases_of(int rounds) { return kPhases + (rounds - 1) * kRoundPhases; }
+// Number `index` of a step's phases_of(rounds); rounds count from 0.
+struct StepPhase {
+  Phase kind;
+  int round;
+};
+constexpr StepPhase phase_at(int index, int rounds) {
+  const int migrates = rounds * kRoundPhases;
+  return index < migrates ? StepPhase{static_cast<Phase>(index % kRoundPhases), index / kRoundPhases}
+                          : StepPhase{static_cast<Phase>(index - migrates + kRoundPhases), rounds - 1};
+}
+constexpr int phase_index(Phase kind, int round, int rounds) {
+  const int k = static_cast<int>(kind);
+  return k < kRoundPhases ? round * kRoundPhases + k : (rounds - 1) * kRoundPhases + k;
+}
+// "force", or with several rounds "force 2", which count from 1 there; "migrate_x".
+std::string phase_name(int index, int rounds);
 // The one that ends a step, in a plan of two or three axes.
 constexpr Phase last_phase(int axes) { return axes == 3 ? Phase::migrate_z : Phase::migrate_y; }
 
@@ -89,8 +108,9 @@ struct Trace {
   // BondState::kept after the last of `bodies`; nothing where bonds are not those of the body as packed.
   std::optional<std::vector<uint64_t>> bonds;
   std::vector<Curve> curves;
-  std::vector<PhaseSpan>
-      cycles;  // [(step * nodes + node) * kPhases + phase]; empty where the engine counts none
+  int rounds = 1;             // of the rule, where an engine counts cycles
+  // [(step * nodes + node) * phases() + phase]; empty where the engine counts none
+  std::vector<PhaseSpan> cycles;
   std::optional<StopReason> stop;  // the run had to stop: after the last complete step
   std::optional<Reached> reached;  // the run ended before its last step, as its scene has it
   std::optional<uint64_t> asked;   // steps that the run was to do, where the file says so
@@ -102,6 +122,7 @@ struct Trace {
   std::vector<std::pair<std::string, double>> counters;    // e.g. {"pairs_issued", 123}
   std::vector<std::pair<std::string, std::string>> notes;  // e.g. {"precision", "float"}
 
+  size_t phases() const { return static_cast<size_t>(phases_of(rounds)); }
   uint64_t steps() const {
     return hash_every == 1 && !state_hash.empty() ? state_hash.size() - 1 : steps_done;
   }

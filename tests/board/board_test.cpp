@@ -188,7 +188,7 @@ TEST(Board, RequestsMayBeRepeated) {
     for (const emu::Bits& word : host.read(n, bits)) {
       const emu::Slot slot = emu::unpack_particle(setup.plan, word);
       const Int3 x = emu::position_of(setup.plan.rule.widths, slot);
-      const Particle p{slot.id, slot.body.type, n, x, slot.body.v, slot.u};
+      const Particle p{slot.body.id, slot.body.type, n, x, slot.body.v, slot.u};
       hash += hash_of(setup.plan.lattice, p);
     }
   EXPECT_EQ(hash, golden.state_hash[7]);

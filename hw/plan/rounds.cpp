@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// A rule of text in a plan: what each of its rounds asks of a node. docs/reference/node.md, "Rounds".
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hw/pipeline/schedule.h"
+#include "hw/plan/plan.h"
+#include "model/base/hash.h"
+#include "model/base/integer_math.h"
+#include "model/graph/certificate.h"
+#include "model/program/integer_program.h"
+#include "model/trace/trace.h"
+
+namespace cuboct {
+namespace {
+
+// Before a pair's graph: the memories' answer, the difference of positions and the constants. Behind it: the sum.
+constexpr int kPairReads = 2, kPairSum = 1;
+// Before a finish: the memories' answer, the sum over the pipes. Behind it: the slot's write.
+constexpr int kFinishReads = 2, kFinishWrite = 1;
+
+std::vector<PlanRound> rounds_of(const Plan& plan) {
+  const graph::FixedProgram& program = plan.program->program;
+  std::vector<PlanRound> rounds;
+  for (size_t k = 0; k < program.rounds.size(); ++k) {
+    const graph::Round& round = program.rounds[k];
+    PlanRound& of = rounds.emplace_back();
+    of.record = k == 0 ? plan.words.halo : plan.words.later[k - 1];
+    of.beats = ceil_div(bits_of(of.record), plan.words.link_bits);
+    std::vector<int> outputs = pair_outputs(round);
+    outputs.push_back(round.when);
+    of.pipe = kPairReads + schedule_of(round.pair, outputs).cycles + kPairSum;
+    of.finish = kFinishReads + schedule_of(round.finish, finish_outputs(program, round)).cycles + kFinishWrite;
+  }
+  return rounds;
+}
+
+}  // namespace
+
+void set_program(Plan& plan, std::shared_ptr<const IntegerProgram> program) {
+  plan.program = std::move(program);
+  plan.words = words_of(plan.rule, plan.arch, plan.particles, &plan.program->program);
+  plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
+  plan.rounds = rounds_of(plan);
+  Hash hash;
+  hash.add(static_cast<int64_t>(plan.hash)).add(plan.words.link_bits);
+  for (const PlanRound& round : plan.rounds) hash.add(round.pipe).add(round.finish);
+  for (const char c : graph::certificate_of(plan.program->program)) hash.add(c);
+  if (const graph::BondRows* rows = plan.program->rows.get()) {
+    for (const uint32_t other : rows->other) hash.add(other);
+    for (const uint32_t kind : rows->kind) hash.add(kind);
+    for (const int64_t constant : rows->constants) hash.add(constant);
+  }
+  plan.hash = hash.value();
+}
+
+std::string machine_refusal(const Plan& plan) {
+  if (!plan.rule.cubic()) return "its nodes have cubic cells, and no cube divides the box";
+  if (plan.program == nullptr) return "";
+  const Arch& arch = plan.arch;
+  if (plan.program->rows) return "it holds no bonds of the body as packed yet";
+  if (plan.rounds.size() > kMostRounds)
+    return fmt::format("it has {} rounds at most, and the rule {}", kMostRounds, plan.rounds.size());
+  if (!plan.bricks.one_cell()) return "nodes of bricks run the pair law alone: set brick = [1, 1, 1]";
+  if (arch.narrow_memories) return "narrow memories are for the pair law alone: set memories = \"wide\"";
+  if (arch.halos == Halos::arrival) return "halos on arrival are for the pair law alone: set halos = \"phases\"";
+  if (arch.multipliers != Multipliers::parallel)
+    return "shared and serial multipliers are for the pair law alone: set multipliers = \"parallel\"";
+  return "";
+}
+
+}  // namespace cuboct
