@@ -48,7 +48,8 @@ class Draw {
       }
       if (k == steps / 2 && !pair_) count();
     }
-    return {b_.take(), refused_};
+    const int when = b_.when();
+    return {b_.take(), refused_, when};
   }
 
  private:

@@ -16,6 +16,7 @@ FixedTable random_table(Dice& dice);
 struct Drawn {
   graph::Graph graph;
   std::map<graph::Op, int> refused;  // operations that left their room
+  int when;                          // the truth that `within` counts on
 };
 // `steps` operations over a few inputs; with a pair's truth in the middle.
 Drawn random_graph(uint64_t seed, int steps);

@@ -31,6 +31,7 @@ declare -A may=(
   [hw/plan]="$machine hw/arch hw/cost"
   [hw/rtl]="$machine hw/arch hw/plan hw/cost"
   [hw/cost]="$machine hw/arch hw/plan hw/rtl"
+  [hw/pipeline]="model/base model/graph"
   [hw/engine]="$machine hw/arch hw/plan"
   [hw/program]="$machine hw/arch hw/plan hw/engine"
   [synth]="$machine hw"
