@@ -28,10 +28,10 @@ std::vector<PlanRound> rounds_of(const Plan& plan) {
     PlanRound& of = rounds.emplace_back();
     of.record = k == 0 ? plan.words.halo : plan.words.later[k - 1];
     of.beats = ceil_div(bits_of(of.record), plan.words.link_bits);
-    std::vector<int> outputs = pair_outputs(round);
-    outputs.push_back(round.when);
-    of.pipe = kPairReads + schedule_of(round.pair, outputs).cycles + kPairSum;
-    of.finish = kFinishReads + schedule_of(round.finish, finish_outputs(program, round)).cycles + kFinishWrite;
+    const auto pair = pipeline::schedule_of(round.pair, pipeline::piped_outputs(round));
+    const auto finish = pipeline::schedule_of(round.finish, finish_outputs(program, round));
+    of.pipe = kPairReads + pair.cycles + kPairSum;
+    of.finish = kFinishReads + finish.cycles + kFinishWrite;
   }
   return rounds;
 }
