@@ -334,6 +334,7 @@ std::string particle_hex(const Plan& plan, const Particle& particle, std::initia
         case FieldKind::displacement:
           return particle.u[f.axis];
         case FieldKind::away:
+        case FieldKind::field:
         case FieldKind::cell:
           break;
       }
