@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/bus, and of rtl/board with the boards'
+// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/pipeline, rtl/bus, and of rtl/board with the boards'
 // pins, embedded at build time.
 #pragma once
 
@@ -16,6 +16,7 @@ struct RtlSource {
 // In the order of names.
 const std::vector<RtlSource>& rtl_library();
 const std::vector<RtlSource>& rtl_lattice_library();
+const std::vector<RtlSource>& rtl_pipeline_library();
 const std::vector<RtlSource>& rtl_bus_library();
 // The pages of docs/reference that the modules' comments name.
 const std::vector<RtlSource>& rtl_pages();

@@ -91,7 +91,7 @@ void print_laws(const std::string& dir, const std::vector<std::string>& names) {
     const Setup setup = make_setup(read_scene(kRoot + "/scenes/" + name + ".toml"), Arch{});
     const graph::FixedProgram program = pair_program(setup.plan.rule, setup.plan.arch.capacity);
     print_row(dir, name + ", as a program", test::pair_of(name, program.rounds[0]));
-    emit_rtl(setup.plan, setup.initial, dir + "/" + name);
+    emit_rtl(setup.plan, setup.initial, dir + "/" + name, {.vector_steps = 1});
     fmt::print("{}, `cuboct_pipe`\t{}\t\t\t\t\t\t{}\n", name, setup.plan.latency.pipe,
                synthesised(dir + "/" + name, "pipe"));
     std::fflush(stdout);

@@ -2,14 +2,18 @@
 // Printed pipelines, Verilated, beside the interpreter: values, faults and cycles.
 #include "hw/pipeline/print.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 
 #include "hw/pipeline/layout.h"
 #include "hw/pipeline/schedule_check.h"
+#include "model/base/output.h"
 #include "model/contract/pair_program.h"
 #include "tests/graph/random_graph.h"
 #include "tests/graph/random_rule.h"
@@ -162,6 +166,39 @@ TEST(PrintedPipelineMore, OfAStepTakenTooSoonIsSeen) {
   kinds.merge(expect_seen(taken_too_soon(first_pair(shipped_rule("plastic").program.program), 2)));
   kinds.merge(expect_seen(taken_too_soon(all_of("any", random_graph(3, 30).graph, -1), 4)));
   EXPECT_GE(kinds.size(), 12u);
+}
+
+// Without a warning.
+void expect_read_by_all_tools(const std::string& rule) {
+  namespace fs = std::filesystem;
+  std::vector<Pipeline> all;
+  add_program(all, rule, shipped_rule(rule).program.program);
+  for (const Pipeline& p : all) {
+    const fs::path dir = fs::path(testing::TempDir()) / "cuboct_pipeline_lint" / p.name;
+    fs::create_directories(dir);
+    std::string files = CUBOCT_SOURCE_DIR "/rtl/lib/cuboct_mult.sv " CUBOCT_SOURCE_DIR
+                                          "/rtl/pipeline/cuboct_leading_zeros.sv";
+    for (const pipeline::Module& module : pipeline::print_pipeline(p.name, p.graph, p.outputs, p.schedule)) {
+      write_text((dir / (module.name + ".sv")).string(), module.text);
+      files += " " + module.name + ".sv";
+    }
+    for (const std::string& command :
+         {fmt::format("verilator --lint-only -Wall --top-module {} {}", p.name, files),
+          fmt::format("iverilog -g2012 -Wall -Wno-timescale -s {} -o /dev/null {}", p.name, files),
+          fmt::format("yosys -q -p 'read_verilog -sv {}; hierarchy -check -top {}; proc; check -assert'",
+                      files, p.name)}) {
+      const std::string log = (dir / "log").string();
+      EXPECT_EQ(std::system(fmt::format("cd {} && {} > {} 2>&1", dir.string(), command, log).c_str()), 0)
+          << command;
+      EXPECT_EQ(read_text(log), "") << command;
+    }
+  }
+}
+
+TEST(PrintedPipeline, IsReadByAllToolsWithoutAWarning) { expect_read_by_all_tools("heat"); }
+
+TEST(PrintedPipelineMore, IsReadByAllToolsWithoutAWarning) {
+  for (const char* rule : kShippedRules) expect_read_by_all_tools(rule);
 }
 
 TEST(PrintedPipeline, HasPortsByTheIntervals) {
