@@ -109,11 +109,29 @@ std::vector<int> StepMaker::limbs(int a) {
   return all;
 }
 
+// The sum of a 2^k where bit k of b is set; the sign's counts less.
+int StepMaker::narrow_product(int a, int b) {
+  const Form form{bits(a) + bits(b), is_signed(a) || is_signed(b)};
+  const int zero = constant(0), last = bits(b) - 1;
+  int sum = -1;
+  for (int k = 0; k <= last; ++k) {
+    const int term =
+        times_power(of(Kind::choose, {slice(b, k, {1, false}), a, zero}, {bits(a), is_signed(a)}), k);
+    if (k == last && is_signed(b))
+      sum = of(Kind::sub, {sum < 0 ? zero : sum, term}, form);
+    else
+      sum = sum < 0 ? term : of(Kind::add, {sum, term}, form);
+  }
+  return cast(sum, form);
+}
+
 int StepMaker::product(int a, int b) {
   const Step &x = at(a), &y = at(b);
   const bool sign = x.is_signed || y.is_signed;
   const auto is_zero = [](const Step& s) { return s.kind == Kind::constant && s.number == 0; };
   if (is_zero(x) || is_zero(y)) return number(0, {x.bits + y.bits, sign});
+  if (std::min(x.bits, y.bits) <= kNarrowBits)
+    return x.bits <= y.bits ? narrow_product(b, a) : narrow_product(a, b);
   return of(Kind::product, {std::min(a, b), std::max(a, b)}, {x.bits + y.bits, sign});
 }
 

@@ -48,6 +48,7 @@ class StepMaker {
   int added(Step step);
   int number(uint64_t value, Form form);
   std::vector<int> limbs(int a);
+  int narrow_product(int a, int b);
   int product(int a, int b);
   void add_product(int a, int b, int width, std::vector<Term>& terms);
   Term sum(Term x, Term y, Form form);

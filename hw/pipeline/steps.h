@@ -36,6 +36,8 @@ enum class Kind : uint8_t {
 inline constexpr int kKinds = static_cast<int>(Kind::rom) + 1;
 // Bits of a product's inputs, with a sign; those of a limb without one.
 inline constexpr int kFactorBits = 18, kLimbBits = kFactorBits - 1;
+// A factor of so many bits is multiplied by adders: a device has a thousand LUTs for each multiplier.
+inline constexpr int kNarrowBits = 3;
 
 struct Step {
   Kind kind = Kind::constant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/bus, and of rtl/board with the boards'
+// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/pipeline, rtl/bus, and of rtl/board with the boards'
 // pins, embedded at build time.
 #pragma once
 

@@ -10,12 +10,6 @@
 namespace cuboct {
 namespace {
 
-// A value in two's complement, as a sized hexadecimal literal.
-std::string literal(int64_t value, int bits) {
-  const uint64_t mask = bits == 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
-  return fmt::format("{}'h{:x}", bits, static_cast<uint64_t>(value) & mask);
-}
-
 std::string concatenated(const Int3& values, int bits, int axes) {
   std::string text;
   for (int a = axes - 1; a >= 0; --a) text += (text.empty() ? "" : ", ") + literal(values[a], bits);

@@ -37,4 +37,9 @@ std::string fill(std::string_view text, const std::map<std::string, std::string,
   return filled;
 }
 
+std::string literal(int64_t value, int bits) {
+  const uint64_t mask = bits == 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
+  return fmt::format("{}'h{:x}", bits, static_cast<uint64_t>(value) & mask);
+}
+
 }  // namespace cuboct
