@@ -470,7 +470,7 @@ std::string Datapath::finish_of(int k) {
   }
   if (end > 0) parts.push_back(fmt::format("waited[{}:0]", end - 1));
   text += fmt::format("{}}} : '0;\n", fmt::join(parts, ",\n      "));
-  text += last ? fmt::format("    assign leaving_{} = {{{}}};\n", k + 1, leaving)
+  text += last ? fmt::format("    assign leaving_{0} = {{{1}}} & {{Axes {{written_{0}}}}};\n", k + 1, leaving)
                : fmt::format("    assign leaving_{} = '0;\n", k + 1);
   if (schedule.steps.fault >= 0) {
     const Form code = form_of_step(schedule, schedule.steps.fault_code),
