@@ -28,7 +28,7 @@ class Session {
     if (info_.nodes != static_cast<int>(plan.nodes()) || info_.particle_bits != word_bits())
       throw std::runtime_error(fmt::format("port {}: {} nodes, {} bits per particle do not fit plan {:016x}",
                                            host.port(), info_.nodes, info_.particle_bits, plan.hash));
-    check_words(plan);
+    check_words(plan, kBeatBits);  // as an emitted project holds
   }
 
   // Makes `state` the board's.

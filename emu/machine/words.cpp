@@ -16,22 +16,29 @@ size_t numbers_of(const Plan& plan) {
   return plan.program ? static_cast<size_t>(plan.program->program.numbers()) : 0;
 }
 
+size_t bond_numbers_of(const Plan& plan) {
+  return plan.program ? static_cast<size_t>(plan.program->program.bond_numbers()) : 0;
+}
+
 int64_t number_in(const WordField& f, const Bits& bits) {
   return f.is_signed ? bits.get_signed(f.lsb, f.bits) : static_cast<int64_t>(bits.get(f.lsb, f.bits));
 }
 
 }  // namespace
 
-void check_words(const Plan& plan) {
+void check_words(const Plan& plan, int most) {
   int widest = std::max(plan.words.halo_bits, plan.words.migrate_bits);
   for (const PlanRound& round : plan.rounds) widest = std::max(widest, bits_of(round.record));
-  if (widest > Bits::kWidth)
-    throw InputError(fmt::format("a record of {} bits: the cycle-accurate engines hold at most {}", widest,
-                                 int{Bits::kWidth}))
-        .about({"widths.velocity_bits", "widths.displacement_bits", "widths.position_frac", "widths.guard"});
-  if (plan.link.checked() && plan.link.wire_bits + 1 > Bits::kWidth)
+  if (widest > most) {
+    const int bonds = plan.words.bonds;
+    throw InputError(fmt::format("a record of {} bits{}: the cycle-accurate engines hold at most {}", widest,
+                                 bonds > 0 ? fmt::format(" with {} bonds", bonds) : std::string(), most))
+        .about({"widths.velocity_bits", "widths.displacement_bits", "widths.position_frac", "widths.guard",
+                "rule.file", "rule"});
+  }
+  if (plan.link.checked() && plan.link.wire_bits + 1 > kBeatBits)
     throw InputError(fmt::format("a checked beat of {} bits: the cycle-accurate engines hold at most {}",
-                                 plan.link.wire_bits + 1, int{Bits::kWidth}),
+                                 plan.link.wire_bits + 1, kBeatBits),
                      "use fewer link.bits")
         .about({"link.bits"});
 }
@@ -97,6 +104,7 @@ void unpack_later(const WordLayout& record, const Bits& bits, std::span<int64_t>
 
 Bits pack_particle(const Plan& plan, const Slot& slot) {
   Bits out;
+  const size_t numbers = bond_numbers_of(plan);
   for (const WordField& f : plan.words.particle) {
     const auto a = static_cast<size_t>(std::max(f.axis, 0));
     const auto value = [&]() -> int64_t {
@@ -117,6 +125,12 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
           return slot.u[a];
         case FieldKind::field:
           return slot.body.fields[static_cast<size_t>(f.number)];
+        case FieldKind::bond_other:
+          return slot.bonds[static_cast<size_t>(f.place)].other;
+        case FieldKind::bond_kind:
+          return slot.bonds[static_cast<size_t>(f.place)].kind;
+        case FieldKind::bond_field:
+          return slot.bond_numbers[static_cast<size_t>(f.place) * numbers + static_cast<size_t>(f.number)];
         case FieldKind::cell:
           break;
       }
@@ -130,6 +144,9 @@ Bits pack_particle(const Plan& plan, const Slot& slot) {
 Slot unpack_particle(const Plan& plan, const Bits& bits) {
   Slot out;
   out.body.fields.resize(numbers_of(plan));
+  const size_t numbers = bond_numbers_of(plan);
+  out.bonds.resize(static_cast<size_t>(plan.words.bonds));
+  out.bond_numbers.resize(out.bonds.size() * numbers);
   for (const WordField& f : plan.words.particle) {
     const auto a = static_cast<size_t>(std::max(f.axis, 0));
     const int64_t value = number_in(f, bits);
@@ -157,6 +174,15 @@ Slot unpack_particle(const Plan& plan, const Bits& bits) {
         break;
       case FieldKind::field:
         out.body.fields[static_cast<size_t>(f.number)] = value;
+        break;
+      case FieldKind::bond_other:
+        out.bonds[static_cast<size_t>(f.place)].other = static_cast<uint32_t>(value);
+        break;
+      case FieldKind::bond_kind:
+        out.bonds[static_cast<size_t>(f.place)].kind = static_cast<uint32_t>(value);
+        break;
+      case FieldKind::bond_field:
+        out.bond_numbers[static_cast<size_t>(f.place) * numbers + static_cast<size_t>(f.number)] = value;
         break;
       case FieldKind::cell:
         break;

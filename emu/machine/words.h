@@ -21,9 +21,17 @@ struct Candidate {
   std::vector<int64_t> fields;  // of a rule of text: its numbers, those of others as far as they were sent
 };
 
+// A place in a particle's row of bonds.
+struct Bond {
+  uint32_t other = 0;  // the partner's id; where there is no bond, the particle's own
+  uint32_t kind = 0;   // as of BondRows
+};
+
 // A particle in a slot.
 struct Slot {
   Candidate body;                    // x: visible
+  std::vector<Bond> bonds;           // of a bonded rule: Words::bonds places
+  std::vector<int64_t> bond_numbers;  // of each place FixedProgram::bond_numbers()
   std::array<int32_t, 3> residue{};  // the G bits of the position below those
   Int3 u{};
   std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
@@ -33,8 +41,8 @@ struct Slot {
 Int3 position_of(const Widths& widths, const Slot& slot);
 void put_position(const Widths& widths, const Int3& x, Slot& slot);
 
-// Throws InputError where a word is wider than Bits.
-void check_words(const Plan& plan);
+// Throws InputError where a word is wider than `most` bits, or a beat than kBeatBits.
+void check_words(const Plan& plan, int most = Bits::kWidth);
 
 // In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros. `cell`:
 // of a plan with bricks.

@@ -45,7 +45,8 @@ Bits& NodeMachine::load(int face, bool end) {
 }
 
 void NodeMachine::load_slice(int face) {
-  if (linked(face)) load(face, false) = word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits);
+  if (!linked(face)) return;
+  word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits, load(face, false));
 }
 
 bool NodeMachine::load_ends(uint8_t faces) {
