@@ -52,7 +52,7 @@ void fill_row(const Plan& plan, const State& state, Slot& slot) {
 }
 
 // Of particle number `k` of the state.
-Bits load_word(const Plan& plan, const State& state, size_t k) {
+Word load_word(const Plan& plan, const State& state, size_t k) {
   const Particle& particle = state.particles[k];
   const size_t numbers = state.fields.size() / state.particles.size();
   const auto fields = std::span(state.fields).subspan(k * numbers, numbers);
@@ -65,7 +65,9 @@ Bits load_word(const Plan& plan, const State& state, size_t k) {
   if (plan.program && fields.empty()) slot.body.fields = beginning_of(plan.program->program.fields);
   slot.u = particle.u;
   if (plan.program && plan.program->rows) fill_row(plan, state, slot);
-  return pack_particle(plan, slot);
+  Word word;
+  pack_particle(plan, slot, word);
+  return word;
 }
 
 }  // namespace
@@ -110,7 +112,7 @@ std::vector<std::vector<Loaded>> by_node(const Plan& plan, const State& initial)
 
 void load(const std::vector<Loaded>& particles, size_t k, Control& control) {
   control.load_valid = k < particles.size();
-  control.load_data = control.load_valid ? particles[k].word : Bits{};
+  control.load_data = control.load_valid ? particles[k].word : Word{};
   control.load_cell = control.load_valid ? particles[k].cell : 0;
 }
 

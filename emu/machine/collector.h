@@ -36,7 +36,7 @@ uint64_t patience_of(const Plan& plan, double stall_rate);
 
 // A particle as the load port takes it: its word, and the cell of a brick.
 struct Loaded {
-  Bits word;
+  Word word;
   uint32_t cell = 0;
 };
 // The particles by physical node, in the order in which they are loaded: by cell, within a cell by id. Throws

@@ -41,18 +41,19 @@ struct Slot {
 Int3 position_of(const Widths& widths, const Slot& slot);
 void put_position(const Widths& widths, const Int3& x, Slot& slot);
 
-// Throws InputError where a word is wider than `most` bits, or a beat than kBeatBits.
-void check_words(const Plan& plan, int most = Bits::kWidth);
+// Throws InputError where a record is wider than `most` bits, or a checked beat than Bits.
+void check_words(const Plan& plan, int most = Word::kWidth);
 
 // In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros. `cell`:
 // of a plan with bricks.
-void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
+void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, std::span<uint64_t> out);
 // In the frame of the sender; returns the cell, 0 without bricks.
-uint32_t unpack_halo(const Plan& plan, const Bits& bits, Candidate& out);
+uint32_t unpack_halo(const Plan& plan, std::span<const uint64_t> bits, Candidate& out);
 // The same of a later round's record: its fields alone.
-void pack_later(const WordLayout& record, std::span<const int64_t> fields, Bits& out);
-void unpack_later(const WordLayout& record, const Bits& bits, std::span<int64_t> fields);
-Bits pack_particle(const Plan& plan, const Slot& slot);
-Slot unpack_particle(const Plan& plan, const Bits& bits);
+void pack_later(const WordLayout& record, std::span<const int64_t> fields, std::span<uint64_t> out);
+void unpack_later(const WordLayout& record, std::span<const uint64_t> bits, std::span<int64_t> fields);
+// `out` must hold zeros.
+void pack_particle(const Plan& plan, const Slot& slot, std::span<uint64_t> out);
+Slot unpack_particle(const Plan& plan, std::span<const uint64_t> bits);
 
 }  // namespace cuboct::emu

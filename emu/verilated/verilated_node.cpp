@@ -19,7 +19,7 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
   out.phase_end = from.phase_end;
   out.idle = from.idle != 0;
   out.observe = from.observe_valid != 0;
-  static_assert(kBeatBits == 64 * kCuboctWords && Bits::kWords >= kCuboctWords);
+  static_assert(Bits::kWords == kCuboctWords && Word::kWords >= kCuboctWords);
   if (out.observe) std::memcpy(out.observe_data.word.data(), from.observe_data, sizeof from.observe_data);
   out.fault = from.fault_valid != 0;
   out.fault_code = from.fault_code;
