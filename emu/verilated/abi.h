@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-enum { kCuboctAbi = 8, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 9, kCuboctFaces = 6, kCuboctWords = 8 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -19,7 +19,8 @@ struct CuboctIn {
 
 // Outputs of one node: `link_*` after the edge that ends the cycle, the others of the cycle.
 struct CuboctOut {
-  uint8_t phase_start, phase_end, observe_valid, fault_valid, fault_code, idle;
+  uint32_t phase_start, phase_end;
+  uint8_t observe_valid, fault_valid, fault_code, fault_stage, idle;  // fault_stage: of a rule of text, else 0
   uint8_t link_valid, link_end, link_ready;
   uint8_t force_event;              // of a node alone: engine runs; by streamer: stalled, presents, issues
   uint8_t pairs;                    // of a node alone: pipes that take a pair

@@ -110,7 +110,8 @@ std::string compile(const Build& build, const std::string& directory) {
   // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
   write_text(
       dir / "keep.vlt",
-      "`verilator_config\nno_inline -module \"cuboct_node_core\"\nno_inline -module \"cuboct_brick_core\"\n");
+      "`verilator_config\nno_inline -module \"cuboct_node_core\"\nno_inline -module \"cuboct_brick_core\"\n"
+      "no_inline -module \"cuboct_rule_core\"\n");
   run_logged("verilator",
              fmt::format("verilator {} {} --top-module {} --prefix V{} -Mdir {} ../keep.vlt -f files.f",
                          kVerilatorFlags, build.verilator_flags, build.top, build.top,

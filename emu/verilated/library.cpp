@@ -69,7 +69,8 @@ Build node_build(const Plan& plan, const std::string& optimise) {
                         {"ACK_BITS", plan.link.ack_bits},
                         {"PARTICLE_BITS", plan.words.particle_bits},
                         {"BRICK", plan.bricks.one_cell() ? 0 : 1},
-                        {"EVENTS", 1 + 3 * plan.arch.streamers}},
+                        {"EVENTS", 1 + 3 * plan.arch.streamers},
+                        {"STAGES", plan.program ? 1 : 0}},
           .sources = with_headers("shim_node.cpp"),
           .emit = [&plan](const std::string& dir) { emit_node(plan, dir); }};
 }

@@ -13,6 +13,7 @@ int sc_main(int argc, char** argv) {
   Machine program{.name = "cuboct-rtl",
                   .description = "Runs a scene on the emitted hardware, compiled by Verilator",
                   .engine = "rtl",
+                  .text = true,
                   .nodes = [&](const cuboct::Plan& plan) {
                     return verilated_nodes(
                         plan, build_directory.empty() ? default_build_directory() : build_directory);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One Verilated node. FACES, LINK_BITS (of link_data), ACK_BITS (0 where links are not checked),
 // PARTICLE_BITS, BRICK (1: of a brick) and EVENTS (bits of force_event_o but for the pipes') come from the
-// command line.
+// command line. STAGES: 1 of a rule of text.
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
@@ -174,6 +174,9 @@ const char* cuboct_clock(void* handle, const CuboctIn* in, CuboctOut* out) {
   out->fault_valid = m.fault_valid_o;
   if (m.fault_valid_o) {
     out->fault_code = m.fault_code_o;
+#if STAGES
+    out->fault_stage = m.fault_stage_o;
+#endif
     out->fault_id = static_cast<uint32_t>(m.fault_id_o);
     out->fault_number = static_cast<int64_t>(m.fault_number_o);
 #if BRICK

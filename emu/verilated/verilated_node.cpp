@@ -23,6 +23,7 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
   if (out.observe) std::memcpy(out.observe_data.word.data(), from.observe_data, sizeof from.observe_data);
   out.fault = from.fault_valid != 0;
   out.fault_code = from.fault_code;
+  out.fault_stage = from.fault_stage;
   out.fault_id = from.fault_id;
   out.observe_cell = from.observe_cell;
   out.fault_cell = from.fault_cell;
@@ -33,7 +34,7 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
 
 VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, const Plan& plan, uint32_t node,
                              uint8_t has_link, uint32_t seed)
-    : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)) {
+    : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)), rounds_(static_cast<int>(plan.rounds.size())) {
   if (plan.bricks.one_cell()) return;
   const auto words = [](const std::vector<bool>& bits) {
     std::vector<uint64_t> packed(bits.size() / 64 + 2);
@@ -86,7 +87,7 @@ void VerilatedNode::clock(const NodeInputs& in, NodeOutputs& out) {
     out.beat[f]->end = out_.link_end >> f & 1;
     std::memcpy(out.beat[f]->payload.word.data(), out_.link_data[f], sizeof out_.link_data[f]);
   }
-  phases_ = static_cast<uint8_t>((phases_ | out.phase_start) & ~out.phase_end);
+  phases_ = (phases_ | out.phase_start) & ~out.phase_end;
   idle_ = out.idle;
 }
 
@@ -110,13 +111,15 @@ Counters VerilatedNode::counters(uint64_t end) const {
 std::string VerilatedNode::doing() const {
   if (idle_) return "idle";
   std::string text = "in";
-  for (int p = 0; p < kPhases; ++p)
-    if (phases_ >> p & 1) text += std::string(" ") + to_string(static_cast<Phase>(p));
+  for (int p = 0; p < phases_of(rounds_); ++p)
+    if (phases_ >> p & 1) text += " " + phase_name(p, rounds_);
   return text;
 }
 
 NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed,
                             const std::string& optimise) {
+  if (plan.words.bonds > 0)
+    throw InputError("the rtl engine: it holds no bonds of the body as packed yet").about({"rule.file", "rule"});
   check_words(plan, 64 * kCuboctWords);
   auto library = std::make_shared<const Library>(compile_node(plan, build_directory, optimise));
   return [library, &plan, seed](uint32_t node, uint8_t has_link) {

@@ -33,7 +33,8 @@ class VerilatedNode : public NodeModel {
   const uint8_t has_link_;
   void* const model_;
   CuboctOut out_{};
-  uint8_t phases_ = 0;  // that run
+  const int rounds_;
+  uint32_t phases_ = 0;  // that run
   uint64_t event_cycles(size_t event, uint64_t end) const;
   std::array<uint64_t, 7> events_{};  // cycles of each bit of force_event_o, up to `last_`
   uint64_t pairs_ = 0, beats_ = 0;    // that pipes took; that receivers took

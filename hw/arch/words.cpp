@@ -96,12 +96,12 @@ WordLayout particle_layout(const FixedRule& r, int id_bits, const graph::FixedPr
   add_axes(word, FieldKind::away, 1, r.axes, 2, true);
   add_axes(word, FieldKind::velocity, 0, r.axes, w.velocity_bits, true);
   add(word, FieldKind::type, r.type_bits);
-  add(word, FieldKind::id, id_bits);
-  add_axes(word, FieldKind::residue, 0, r.axes, w.guard, false);
-  if (r.pd) add_axes(word, FieldKind::displacement, 0, r.axes, w.displacement_bits, true);
   for (int f = 0; program != nullptr && f < static_cast<int>(program->fields.size()); ++f)
     for (int n = 0; n < program->fields[static_cast<size_t>(f)].numbers; ++n)
       add_number(word, *program, f, n);
+  add(word, FieldKind::id, id_bits);
+  add_axes(word, FieldKind::residue, 0, r.axes, w.guard, false);
+  if (r.pd) add_axes(word, FieldKind::displacement, 0, r.axes, w.displacement_bits, true);
   return word;
 }
 

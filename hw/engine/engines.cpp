@@ -40,6 +40,7 @@ const std::vector<EngineRow>& engines() {
        .needs = "install libsystemc-dev and build again",
        .cost = {0, 0, true, 600, 0, 50e3}},
       {.name = "rtl",
+       .text = true,
        .links = true,
        .cycles = true,
        .unsaved = kNeverStands,

@@ -111,7 +111,6 @@ class Audit {
     const bool product = step(k).kind == Kind::product, rom = step(k).kind == Kind::rom;
     if ((product || rom) && own.ps != 0) refuse(fmt::format("{} ends in a register", name(k)));
     for (const int input : step(k).inputs) {
-      if (step(input).kind == Kind::constant) continue;
       const Moment in = at(input);
       bool late = false;
       if (product)

@@ -52,6 +52,8 @@ int StepMaker::input(Form form) {
 }
 
 int StepMaker::of(Kind kind, std::vector<int> inputs, Form form) {
+  if (kind == Kind::choose && at(inputs[0]).kind == Kind::constant)
+    return cast(inputs[at(inputs[0]).number != 0 ? 1 : 2], form);
   return added({.kind = kind, .inputs = std::move(inputs), .bits = form.bits, .is_signed = form.is_signed});
 }
 
@@ -72,6 +74,7 @@ int StepMaker::sign(int a) { return slice(a, bits(a) - 1, {1, false}); }
 
 int StepMaker::chosen(int truth, int a, int b) {
   if (a == b) return a;
+  if (at(truth).kind == Kind::constant) return at(truth).number != 0 ? a : b;
   const Form one{bits(a), is_signed(a)}, other{bits(b), is_signed(b)};
   Form form = sum_form(one, other);
   --form.bits;

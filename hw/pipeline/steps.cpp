@@ -89,9 +89,9 @@ class GraphSteps {
       case Op::select:
         return make_.of(Kind::choose, {a(), b(), in(node, 2)}, form);
       case Op::min:
-        return make_.of(Kind::choose, {make_.of(Kind::less, {a(), b()}, {}), a(), b()}, form);
+        return make_.of(Kind::choose, {less(node, 0, 1), a(), b()}, form);
       case Op::max:
-        return make_.of(Kind::choose, {make_.of(Kind::less, {a(), b()}, {}), b(), a()}, form);
+        return make_.of(Kind::choose, {less(node, 0, 1), b(), a()}, form);
       case Op::abs:
         return absolute(node, form);
       case Op::clamp:
@@ -126,6 +126,13 @@ class GraphSteps {
     const size_t count = (node.inputs.size() - first) / 2;
     for (size_t k = first; k < first + count; ++k) factors.emplace_back(in(node, k), in(node, k + count));
     return make_.sum_of_products(factors, form);
+  }
+
+  // Whether one input is less than another, where their intervals do not say so.
+  int less(const Node& node, size_t a, size_t b) {
+    if (range(node, a).high < range(node, b).low) return make_.constant(1);
+    if (in(node, a) == in(node, b) || range(node, a).low >= range(node, b).high) return make_.constant(0);
+    return make_.of(Kind::less, {in(node, a), in(node, b)}, {});
   }
 
   int absolute(const Node& node, Form form) {
@@ -244,7 +251,7 @@ class GraphSteps {
             make_.slice(r2, below - table.fraction_bits, {table.fraction_bits, false})};
   }
   // The leading one goes to the top bit, so that index and t stand at fixed places below it.
-  Address octave_address(const FixedTable& table, int r2) {
+  Address octave_address(const FixedTable& table, int r2, Interval range) {
     const Leading l = leading_of(r2, graph::domain_of(table).high, true);
     const int top = make_.of(Kind::shift_left, {l.value, l.zeros}, {l.bits, false});
     const int taken = table.bin_bits + table.fraction_bits, row_bits = table.index_bits - table.bin_bits;
@@ -257,9 +264,13 @@ class GraphSteps {
                    {row_bits, false});
       all = make_.join(row, all);
     }
-    const int small = make_.of(Kind::less, {r2, make_.constant(int64_t{1} << table.first_octave)}, {});
-    const int both = make_.of(Kind::choose, {small, make_.constant(0), all},
-                              {table.index_bits + table.fraction_bits, false});
+    const int64_t first = int64_t{1} << table.first_octave;
+    int both = make_.cast(all, {table.index_bits + table.fraction_bits, false});
+    if (range.low < first) {
+      const int small =
+          range.high < first ? make_.constant(1) : make_.of(Kind::less, {r2, make_.constant(first)}, {});
+      both = make_.of(Kind::choose, {small, make_.constant(0), both}, {make_.bits(both), false});
+    }
     return {make_.slice(both, table.fraction_bits, {table.index_bits, false}),
             make_.slice(both, 0, {table.fraction_bits, false})};
   }
@@ -267,7 +278,7 @@ class GraphSteps {
   int lookup(const Node& node, Form form) {
     const FixedTable& table = graph_.tables[static_cast<size_t>(node.table)];
     Address address = table.shape == TableShape::uniform ? uniform_address(table, in(node, 0))
-                                                         : octave_address(table, in(node, 0));
+                                                         : octave_address(table, in(node, 0), range(node, 0));
     if (graph::laws_of(table) > 1) address.index = make_.join(in(node, 1), address.index);
     const EntryForm entry = entry_form(table);
     const int word = make_.rom(address.index, node.table, entry.bits());
@@ -287,7 +298,7 @@ class GraphSteps {
 
   // As Hash (model/base/hash.h) mixes the seed, the lesser id, the greater, and the third number.
   int noise(const Node& node, Form form) {
-    const int a = in(node, 0), b = in(node, 1), a_first = make_.of(Kind::less, {a, b}, {});
+    const int a = in(node, 0), b = in(node, 1), a_first = less(node, 0, 1);
     int state = make_.word(Hash().add(node.number).value());
     for (const int next : {make_.chosen(a_first, a, b), make_.chosen(a_first, b, a), in(node, 2)})
       state = mixed(make_.of(Kind::exclusive, {state, next}, kWord));

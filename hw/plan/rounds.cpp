@@ -17,8 +17,9 @@ namespace {
 
 // Before a pair's graph: the memories' answer, the difference of positions and the constants. Behind it: the sum.
 constexpr int kPairReads = 2, kPairSum = 1;
-// Before a finish: the memories' answer, the sum over the pipes. Behind it: the slot's write.
-constexpr int kFinishReads = 2, kFinishWrite = 1;
+// Before a finish: the memories' answer, the sum over the pipes. Behind it: the slot's write, and the memory's answer
+// to who asks for it.
+constexpr int kFinishReads = 2, kFinishWrite = 2;
 
 std::vector<PlanRound> rounds_of(const Plan& plan) {
   const graph::FixedProgram& program = plan.program->program;

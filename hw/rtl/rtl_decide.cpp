@@ -56,13 +56,14 @@ ValueRange table_range(const FixedTable& table) {
   return all;
 }
 
-RtlDesign decide(const Plan& plan) {
+namespace {
+
+// The constants and tables of cuboct_node_core, or of cuboct_brick_core.
+void add_pair_law(const Plan& plan, RtlDesign& design) {
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const Arch& arch = plan.arch;
-  RtlDesign design;
-  design.maker = fmt::format("Made by cuboct emit from plan {:016x}; do not edit.", plan.hash);
-
+  const bool bricks = !plan.bricks.one_cell();
   const auto constant = [&](const char* name, int64_t value, const char* comment) {
     design.constants.push_back({name, value, false, true, comment});
   };
@@ -70,7 +71,6 @@ RtlDesign decide(const Plan& plan) {
     design.constants.push_back({name, static_cast<int64_t>(value), true, true, comment});
   };
   constant("Axes", rule.axes, "3, or 2 where nothing happens along z");
-  const bool bricks = !plan.bricks.one_cell();
   if (bricks)
     for (size_t a = 0; a < 3; ++a)
       constant(std::array{"BrickX", "BrickY", "BrickZ"}[a], arch.brick[static_cast<int>(a)],
@@ -138,8 +138,49 @@ RtlDesign decide(const Plan& plan) {
   constant("Weighted", rule.weighted, "masses of types differ");
   constant("LawBits", rule.law_bits, "of the law of a pair of types; 0: all have one");
   constant("Pd", rule.pd, "some type is held by force");
-  design.constants.push_back(
-      {"ParticleBits", plan.words.particle_bits, false, false, "of the words to load and observe"});
+  add_table(design, "cuboct_force_rom", rule.force, w.strength_bits, rule.law_bits);
+  if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits, 0);
+  const int s_bits = rule.damped ? w.strength_bits : force_bits;
+  const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
+  design.pair_sum_bits =
+      kick_bits + ceil_log2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
+}
+
+}  // namespace
+
+RtlDesign decide(const Plan& plan) {
+  const FixedRule& rule = plan.rule;
+  const Widths& w = rule.widths;
+  const Arch& arch = plan.arch;
+  const bool bricks = !plan.bricks.one_cell();
+  RtlDesign design;
+  design.maker = fmt::format("Made by cuboct emit from plan {:016x}; do not edit.", plan.hash);
+
+  const auto constant = [&](const char* name, int64_t value, const char* comment) {
+    design.constants.push_back({name, value, false, true, comment});
+  };
+  const auto wide = [&](const char* name, uint64_t value, const char* comment) {
+    design.constants.push_back({name, static_cast<int64_t>(value), true, true, comment});
+  };
+  if (plan.program) {
+    constant("Axes", rule.axes, "3, or 2 where nothing happens along z");
+    constant("Capacity", arch.capacity, "particles per node");
+    constant("FilterLanes", arch.filter_lanes, "own particles that a candidate meets per cycle");
+    constant("ForcePipes", arch.force_pipes, "pairs per cycle");
+    constant("QueueDepth", arch.queue_depth, "entries between filter and pipes");
+    constant("Overlap", arch.overlap, "1: the force engine starts with the exchange");
+    constant("LinkBits", plan.words.link_bits, "payload of a beat");
+    constant("IdBits", plan.words.id_bits, "");
+    constant("PositionFrac", w.position_frac, "fractional bits of x that pairs and links see");
+    constant("FilterFrac", w.filter_frac, "leading bits of a position that the filter tests");
+    wide("PlanarOne", static_cast<uint64_t>(rule.planar[0]), "FilterFrac fractional bits");
+    wide("PlanarTwo", static_cast<uint64_t>(rule.planar[1]), "");
+    wide("PlanarThree", static_cast<uint64_t>(rule.planar[2]), "");
+  } else {
+    add_pair_law(plan, design);
+  }
+  design.constants.push_back({"ParticleBits", plan.words.particle_bits, false, plan.program != nullptr,
+                              "of the words to load and observe"});
   if (const LinkCode& code = plan.link; code.checked()) {
     const auto guard = [&](const char* name, int64_t value, const char* comment, bool wide_one = false) {
       design.constants.push_back({name, value, wide_one, false, comment});
@@ -159,8 +200,8 @@ RtlDesign decide(const Plan& plan) {
     design.checked = true;
   }
 
-  add_table(design, "cuboct_force_rom", rule.force, w.strength_bits, rule.law_bits);
-  if (rule.damped) add_table(design, "cuboct_damp_rom", rule.damp, w.strength_bits, 0);
+  design.rounds = static_cast<int>(plan.rounds.size());
+  design.text = plan.program != nullptr;
   design.types = rule.types;
   if (rule.scaled) design.scale = rule.scale;
   design.law_bits = rule.law_bits;
@@ -173,10 +214,6 @@ RtlDesign decide(const Plan& plan) {
   design.velocity_bits = w.velocity_bits;
   design.particle_bits = plan.words.particle_bits;
   design.link_bits = plan.words.link_bits;
-  const int s_bits = rule.damped ? w.strength_bits : force_bits;
-  const int kick_bits = std::max(2, s_bits + w.difference_frac + 1 - rule.kick_shift);
-  design.pair_sum_bits =
-      kick_bits + ceil_log2((rule.axes == 3 ? 27u : 9u) * static_cast<uint64_t>(arch.capacity));
   for (uint32_t n = 0; n < plan.nodes(); ++n) {
     design.cells.push_back(plan.low_of(n));
     auto& faces = design.neighbour.emplace_back();

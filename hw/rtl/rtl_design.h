@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hw/plan/plan.h"
@@ -47,6 +48,10 @@ struct RtlDesign {
   std::vector<std::vector<uint8_t>> law;    // types x types; empty where there is one law
   int axes = 3;
   int streamers = 1, pipes = 1;
+  int rounds = 1;
+  bool text = false;  // a rule of text
+  // Of it: what cuboct_rule_core is told besides the constants. The emission adds it.
+  std::vector<std::pair<std::string, std::string>> rule;
   bool arrival = false;  // halos are used as they come
   int type_bits = 0;
   int velocity_bits = 0;

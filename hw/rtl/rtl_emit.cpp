@@ -20,6 +20,7 @@
 #include "hw/rtl/rtl_library.h"
 #include "hw/rtl/rtl_prefix.h"
 #include "hw/rtl/rtl_project.h"
+#include "hw/rtl/rule_datapath.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
 
@@ -33,7 +34,16 @@ using Files = RtlFiles;
 // Every emission begins with this, so that a second one may overwrite it.
 constexpr const char* kMarker = ".cuboct-emit";
 
-void add_node(Files& files, const RtlDesign& design) {
+// The design, with what a rule of text adds.
+RtlDesign design_of(const Plan& plan) {
+  if (const std::string why = machine_refusal(plan); !why.empty())
+    throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
+  RtlDesign design = decide(plan);
+  if (plan.program) design.rule = rule_parameters(plan);
+  return design;
+}
+
+void add_node(Files& files, const RtlDesign& design, const Plan& plan) {
   // What checks links goes only where links are checked; of the two kinds of node one is there.
   // cuboct_sums goes with bricks too: yosys looks into cuboct_datapath with its default parameters first, and
   // wants what one cell needs.
@@ -45,7 +55,13 @@ void add_node(Files& files, const RtlDesign& design) {
       "cuboct_slots.sv",     "cuboct_streamer.sv",    "cuboct_tick.sv",      "cuboct_word_halos.sv",
       "cuboct_word_inbox.sv"};
   const std::set<std::string_view> arrival{"cuboct_arrival_relay.sv", "cuboct_box.sv", "cuboct_cull.sv"};
+  // What runs the pair law, and a rule of text does not need.
+  const std::set<std::string_view> law{"cuboct_node_core.sv", "cuboct_datapath.sv",  "cuboct_pipe.sv",
+                                       "cuboct_update.sv",    "cuboct_candidate.sv", "cuboct_halos.sv",
+                                       "cuboct_pair_walk.sv", "cuboct_word_halos.sv", "cuboct_word_inbox.sv",
+                                       "cuboct_pair_table.sv", "cuboct_axis_mults.sv", "cuboct_link_rx.sv"};
   const auto used = [&](std::string_view name) {
+    if (design.text && law.contains(name)) return false;
     if (checks.contains(name)) return design.checked;
     if (arrival.contains(name)) return design.arrival;
     return design.bricks() ? !single.contains(name) : !name.starts_with("cuboct_brick_");
@@ -53,11 +69,18 @@ void add_node(Files& files, const RtlDesign& design) {
   for (const RtlSource& source : rtl_library())
     if (used(source.name)) files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_pkg.sv"] = print_package(design);
+  files["rtl/cuboct_node.sv"] = print_node(design);
+  if (design.text) {
+    for (const auto* library : {&rtl_pipeline_library(), &rtl_rounds_library()})
+      for (const RtlSource& source : *library) files["rtl/" + std::string(source.name)] = source.text;
+    for (const pipeline::Module& module : rule_modules(plan))
+      files["rtl/" + module.name + ".sv"] = head(design) + module.text;
+    return;
+  }
   for (const RtlTable& table : design.tables)
     files["rtl/" + table.module + ".sv"] = print_table(design, table);
   if (!design.scale.empty()) files["rtl/cuboct_scale_rom.sv"] = print_scale(design);
   files["rtl/cuboct_type_rom.sv"] = print_types(design);
-  files["rtl/cuboct_node.sv"] = print_node(design);
 }
 
 // A page without its links to others, which a project does not hold; those within the page stay.
@@ -128,10 +151,10 @@ void check_emit_directory(const std::string& dir) {
 }
 
 void emit_node(const Plan& plan, const std::string& dir) {
-  const RtlDesign design = decide(plan);
+  const RtlDesign design = design_of(plan);
   legalise(design, false);
   Files files;
-  add_node(files, design);
+  add_node(files, design, plan);
   add_list(files);
   write(dir, files);
 }
@@ -145,7 +168,7 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
     plan.arch.places.fail({"boards"},
                           "a project is for one device, and [boards] cuts the machine into several",
                           "leave out [boards]; 'cuboct run --engine rtl' clocks the whole machine with it");
-  RtlDesign design = decide(plan);
+  RtlDesign design = design_of(plan);
   legalise(design, true);
   if (!board.name.empty()) legalise_board(plan, board);
   if (!board.bus.empty()) legalise_bus(plan, board);
@@ -162,7 +185,7 @@ void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, co
   const BoardChoice& board = emission.board;
   const RtlDesign design = legal_design(plan, emission);
   Files files;
-  add_node(files, design);
+  add_node(files, design, plan);
   for (const RtlSource& source : rtl_lattice_library())
     files["rtl/" + std::string(source.name)] = source.text;
   files["rtl/cuboct_lattice.sv"] = print_lattice(design);

@@ -17,6 +17,9 @@ struct RtlSource {
 const std::vector<RtlSource>& rtl_library();
 const std::vector<RtlSource>& rtl_lattice_library();
 const std::vector<RtlSource>& rtl_bus_library();
+// What nodes need that run a rule of text: of its pipelines, and around its rounds.
+const std::vector<RtlSource>& rtl_pipeline_library();
+const std::vector<RtlSource>& rtl_rounds_library();
 // The pages of docs/reference that the modules' comments name.
 const std::vector<RtlSource>& rtl_pages();
 // Those of one board alone are called "BOARD/name".

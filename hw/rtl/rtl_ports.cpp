@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "model/trace/trace.h"
+
 namespace cuboct {
 namespace {
 
@@ -54,9 +56,10 @@ std::vector<RtlPort> node_ports(const RtlDesign& design, bool core) {
   add(true, kOut, "link_ready_o", faces, "it is taken");
   add(checked, kOut, "link_ack_o", ack, "about the beats that come in over the face");
   add(checked, kOut, "link_error_o", std::to_string(4 * design.axes), "a beat, an acknowledgement was wrong");
-  add(true, kOut, "phase_start_o", "8",
+  const std::string phases = std::to_string(phases_of(design.rounds));
+  add(true, kOut, "phase_start_o", phases,
       "first cycle of a phase: exchange x y z, force, update, migrate x y z");
-  add(true, kOut, "phase_end_o", "8", "last cycle of a phase");
+  add(true, kOut, "phase_end_o", phases, "last cycle of a phase");
   add(true, kOut, "force_event_o", std::to_string(1 + 3 * design.streamers + design.pipes),
       "the force engine runs; each streamer is stalled, presents a candidate, issues pairs; each pipe takes "
       "a pair");
@@ -65,6 +68,8 @@ std::vector<RtlPort> node_ports(const RtlDesign& design, bool core) {
   add(true, kOut, "observe_data_o", particle, "with observe_valid_o: the particle");
   add(true, kOut, "fault_valid_o", "1", "at the end of a step that had a fault");
   add(true, kOut, "fault_code_o", "4", "with fault_valid_o: which");
+  add(design.text, kOut, "fault_stage_o", "4",
+      "with fault_valid_o: twice the round, one more of its finish; those of migrations are last");
   add(true, kOut, "fault_id_o", "cuboct_pkg::IdBits", "with fault_valid_o: of which particle");
   add(bricks, kOut, "fault_cell_o", cell, "with fault_valid_o: in which cell of the node");
   add(true, kOut, "fault_number_o", "64", "with fault_valid_o: the value that does not fit, signed");

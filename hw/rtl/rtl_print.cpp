@@ -183,7 +183,9 @@ std::string print_node_box(const RtlDesign& design) {
 }
 
 std::string print_node(const RtlDesign& design) {
-  const char* core_name = design.bricks() ? "cuboct_brick_core" : "cuboct_node_core";
+  const char* core_name = design.text     ? "cuboct_rule_core"
+                          : design.bricks() ? "cuboct_brick_core"
+                                            : "cuboct_node_core";
   std::string text = head(design);
   text += fmt::format(
       "// One node of the plan: {} with the plan's constants{}.\nmodule cuboct_node (\n{});\n", core_name,
@@ -192,7 +194,7 @@ std::string print_node(const RtlDesign& design) {
   // What stands between the core's links and the node's: the core's port `x_o` is the wire `core_x`, `x_i`
   // the wire `wire_x`.
   const auto guarded = [&](const std::string& name) {
-    return design.checked && ((name.starts_with("link_")) || name.starts_with("fault_"));
+    return design.checked && name != "fault_stage_o" && (name.starts_with("link_") || name.starts_with("fault_"));
   };
   const auto inner = [](const std::string& name) {
     return (name.ends_with("_o") ? "core_" : "wire_") + name.substr(0, name.size() - 2);
@@ -205,8 +207,9 @@ std::string print_node(const RtlDesign& design) {
   }
   for (const RtlConstant& c : design.constants)
     if (c.core) core.push_back(fmt::format("    .{0}(cuboct_pkg::{0})", c.name));
-  core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
-  if (design.moved.empty()) connected.emplace_back("    .velocity_i(1'b0)");
+  for (const auto& [name, value] : design.rule) core.push_back(fmt::format("    .{}({})", name, value));
+  if (!design.text) core.push_back(fmt::format("    .MovedTypes({})", design.moved.size()));
+  if (!design.text && design.moved.empty()) connected.emplace_back("    .velocity_i(1'b0)");
   text += fmt::format("  {} #(\n{}\n  ) u_core (\n{}\n  );\n", core_name, fmt::join(core, ",\n"),
                       fmt::join(connected, ",\n"));
   if (design.checked)

@@ -7,31 +7,32 @@
 module cuboct_least_fault #(
   parameter int Sources    = 1,  // pipes, that may speak in one cycle; >= 1
   parameter int IdBits     = 8,  // of an id, >= 1
-  parameter int NumberBits = 64  // that hold every number, <= 64
+  parameter int NumberBits = 64, // that hold every number, <= 64
+  parameter int CodeBits   = 4   // of a code: of a rule of several rounds with the stage above it
 ) (
   input  logic                      clk_i,
   input  logic                      rst_ni,
   input  logic                      clear_i,          // the step's last cycle: neither in it nor in the one before
                                                       // the update spoke, nor a pipe in $clog2(Sources) more
   input  logic [Sources-1:0]        valid_i,          // per pipe: a fault
-  input  logic [Sources*4-1:0]      code_i,           // 1 or 2
+  input  logic [Sources*CodeBits-1:0] code_i,         // 1 or 2, or with a stage
   input  logic [Sources*IdBits-1:0] id_i,             // of the particle
   input  logic [Sources*64-1:0]     number_i,         // signed
   input  logic                      update_valid_i,   // a fault of the update
-  input  logic [3:0]                update_code_i,    // 3 to 5
+  input  logic [CodeBits-1:0]       update_code_i,    // 3 to 5
   input  logic [IdBits-1:0]         update_id_i,      // of the particle
   input  logic [63:0]               update_number_i,  // signed
   input  logic                      move_valid_i,     // a fault of migration
-  input  logic [3:0]                move_code_i,      // 6 to 11, none below an earlier one of the step
+  input  logic [CodeBits-1:0]       move_code_i,      // 6 to 11, none below an earlier one of the step
   input  logic [IdBits-1:0]         move_id_i,        // of the particle
   input  logic [63:0]               move_number_i,    // one for each code, >= 0
   output logic                      valid_o,          // with clear_i: there was one in the step
-  output logic [3:0]                code_o,           // of the least; 0 where there is none
+  output logic [CodeBits-1:0]       code_o,           // of the least; 0 where there is none
   output logic [IdBits-1:0]         id_o,             // 0 where there is none
   output logic signed [63:0]        number_o          // 0 where there is none
 );
   // With its sign inverted, number orders as an unsigned value.
-  localparam int KeyBits = 4 + IdBits + NumberBits;
+  localparam int KeyBits = CodeBits + IdBits + NumberBits;
   localparam int Nodes   = 2 * Sources;  // 1 is the root; n holds the lesser of 2n and 2n+1, or pipe n-Sources
 
   logic [Nodes-1:1]               late_q;  // a fault on its way
@@ -44,7 +45,7 @@ module cuboct_least_fault #(
     if (n >= Sources) begin : gen_pipe
       localparam int S = n - Sources;
       assign some = valid_i[S];
-      assign key  = {code_i[S*4 +: 4], id_i[S*IdBits +: IdBits], !number_i[S*64+63], number_i[S*64 +: NumberBits-1]};
+      assign key  = {code_i[S*CodeBits +: CodeBits], id_i[S*IdBits +: IdBits], !number_i[S*64+63], number_i[S*64 +: NumberBits-1]};
     end else begin : gen_lesser
       logic upper;
       assign some  = late_q[2*n] || late_q[2*n+1];
@@ -75,7 +76,7 @@ module cuboct_least_fault #(
   assign move_key = {move_code_i, move_id_i, !move_number_i[NumberBits-1], move_number_i[NumberBits-2:0]};
   assign moved    = move_valid_i
                  && ((!valid_q && late_q == '0)
-                     || (valid_q && key_q[NumberBits+IdBits +: 4] == move_code_i
+                     || (valid_q && key_q[NumberBits+IdBits +: CodeBits] == move_code_i
                          && below(move_id_i, key_q[NumberBits +: IdBits])));
   assign less     = late_q[1] && (!valid_q || late_key_q[KeyBits +: KeyBits] < key_q);
   assign key_d    = moved ? move_key : late_key_q[KeyBits +: KeyBits];
@@ -91,7 +92,7 @@ module cuboct_least_fault #(
   logic [KeyBits-1:0] least;
   assign valid_o = valid_q || move_valid_i;
   assign least   = moved ? move_key : key_q;
-  assign code_o  = valid_o ? least[NumberBits+IdBits +: 4] : 4'd0;
+  assign code_o  = valid_o ? least[NumberBits+IdBits +: CodeBits] : '0;
   assign id_o    = valid_o ? least[NumberBits +: IdBits] : '0;
   logic signed [NumberBits-1:0] number;
   assign number = valid_o ? $signed({!least[NumberBits-1], least[NumberBits-2:0]}) : '0;

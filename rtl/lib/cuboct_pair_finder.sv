@@ -7,6 +7,7 @@ module cuboct_pair_finder #(
   parameter int          Halos           = 6,   // segments behind the own particles', >= 1
   parameter int          Own             = 1,   // 1: own particles are a segment, the first
   parameter int          Arrival         = 0,   // 1: records may be read before their segment is complete
+  parameter int          Rounds          = 1,   // above 1 a step's records may be walked again
   parameter int          PositionFrac    = 20,
   parameter int          FilterFrac      = 8,
   parameter logic [63:0] PlanarOne       = 64'd0,
@@ -30,6 +31,8 @@ module cuboct_pair_finder #(
   input  logic [CountBits-1:0]                  own_count_i,  // own particles
   input  logic [Segments-1:0]                   complete_i,   // by segment: all records are there
   input  logic [Halos-1:0]                      came_i,       // by segment behind the own ones: a record comes
+  input  logic                                  again_i,      // with restart_i: the records are walked again
+  input  logic [Halos*CountBits-1:0]            counts_i,     // with again_i: of records
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
   output logic                                  read_o,       // the memories are asked
@@ -65,11 +68,11 @@ module cuboct_pair_finder #(
   logic                     push, pop, full, empty;
 
   cuboct_streamer #(
-    .Segments(Segments), .Own(Own), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits),
+    .Segments(Segments), .Own(Own), .Arrival(Arrival), .Rounds(Rounds), .FilterLanes(FilterLanes), .RowBits(RowBits),
     .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_streamer (
     .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_i, .came_i,
-    .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
+    .again_i, .counts_i, .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
   if (Arrival != 0) begin : gen_later

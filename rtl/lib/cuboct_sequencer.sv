@@ -2,7 +2,10 @@
 // The main state machine: steps, phases and their events. A phase's unit says when its last cycle is.
 module cuboct_sequencer #(
   parameter int Axes    = 3,  // 2 or 3; with 2 the machine has neither EXCHANGE_Z nor MIGRATE_Z
-  parameter int Overlap = 1  // 1: the force engine starts with the exchange, 0: with FORCE
+  parameter int Overlap = 1, // 1: the force engine starts with the exchange, 0: with FORCE
+  parameter int Rounds  = 1, // of the rule, >= 1: each exchanges, meets and updates; the last one is followed by MIGRATE
+  localparam int RoundPhases = 5 * Rounds,  // before the migrations
+  localparam int Phases      = RoundPhases + 3
 ) (
   input  logic        clk_i,
   input  logic        rst_ni,
@@ -16,6 +19,7 @@ module cuboct_sequencer #(
   input  logic        dump_done_i,      // of DUMP
   // Where the machine is.
   output logic        idle_o,
+  output logic [Rounds-1:0] round_o,    // of these phases, one bit each; in others the first or any
   output logic        exchange_o,       // in an exchange phase
   output logic        update_o,         // in UPDATE
   output logic        migrate_o,        // in a migration phase
@@ -25,8 +29,8 @@ module cuboct_sequencer #(
   output logic        engine_o,         // the force engine runs
   output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this step is over; only while the engine runs
   output logic        step_end_o,       // last cycle of the last migration phase
-  output logic [7:0]  phase_start_o,    // first cycle of exchange x y z, force, update, migrate x y z
-  output logic [7:0]  phase_end_o
+  output logic [Phases-1:0] phase_start_o,  // first cycle of exchange x y z, force, update by round, of migrate x y z
+  output logic [Phases-1:0] phase_end_o
 );
   // One bit each: what depends on the machine's state depends on a register, and the way from a phase's last cycle to
   // the next state is two choices long.
@@ -51,15 +55,29 @@ module cuboct_sequencer #(
   logic [31:0]   steps_d, steps_q;  // still to do, this one included
   logic          last_step_q;       // the step is the last one: known a cycle after the step's first
   logic          start, none;
+  logic          last_round, again;  // again: another round begins
 
+  if (Rounds > 1) begin : gen_rounds
+    logic [Rounds-1:0] round_d, round_q;
+    assign round_d = again ? round_q << 1 : state_q[Idle] || step_end_o ? {{(Rounds - 1) {1'b0}}, 1'b1} : round_q;
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) round_q <= {{(Rounds - 1) {1'b0}}, 1'b1};
+      else round_q <= round_d;
+    end
+    assign round_o = round_q;
+  end else begin : gen_one_round
+    assign round_o = 1'b1;
+  end
+  assign last_round = round_o[Rounds-1];
+  assign again      = state_q[Update] && update_done_i && !last_round;
   assign start     = state_q[Idle] && start_i;
   assign none      = (steps_i == 32'd0);
-  assign enter[ExchangeX] = (start && !none) || (step_end_o && !last_step_q);
+  assign enter[ExchangeX] = (start && !none) || (step_end_o && !last_step_q) || again;
   assign enter[ExchangeY] = state_q[ExchangeX] && exchange_done_i;
   assign enter[ExchangeZ] = (Axes == 3) && state_q[ExchangeY] && exchange_done_i;
   assign enter[Force]     = state_q[LastExchange] && exchange_done_i;
   assign enter[Update]    = state_q[Force] && force_done_i;
-  assign enter[MigrateX]  = state_q[Update] && update_done_i;
+  assign enter[MigrateX]  = state_q[Update] && update_done_i && last_round;
   assign enter[MigrateY]  = state_q[MigrateX] && migrate_done_i;
   assign enter[MigrateZ]  = (Axes == 3) && state_q[MigrateY] && migrate_done_i;
   assign enter[Dump]      = (start && none) || (step_end_o && last_step_q);
@@ -113,14 +131,19 @@ module cuboct_sequencer #(
   assign axis_o     = axis_q[2:1];
   assign onehot_o   = axis_q[Axes-1:0];
 
-  assign phase_start_o = {first_q && state_q[MigrateZ], first_q && state_q[MigrateY],
-                          first_q && state_q[MigrateX], first_q && update_o, engine_first,
-                          first_q && state_q[ExchangeZ], first_q && state_q[ExchangeY],
-                          first_q && state_q[ExchangeX]};
-  assign phase_end_o   = {state_q[MigrateZ] && migrate_done_i, state_q[MigrateY] && migrate_done_i,
-                          state_q[MigrateX] && migrate_done_i, update_o && update_done_i,
-                          in_force && force_done_i, state_q[ExchangeZ] && exchange_done_i,
-                          state_q[ExchangeY] && exchange_done_i, state_q[ExchangeX] && exchange_done_i};
+  logic [4:0] begins, ends;  // of a round's phases
+  assign begins = {first_q && update_o, engine_first, first_q && state_q[ExchangeZ], first_q && state_q[ExchangeY],
+                   first_q && state_q[ExchangeX]};
+  assign ends   = {update_o && update_done_i, in_force && force_done_i, state_q[ExchangeZ] && exchange_done_i,
+                   state_q[ExchangeY] && exchange_done_i, state_q[ExchangeX] && exchange_done_i};
+  for (genvar r = 0; r < Rounds; r++) begin : gen_round_phases
+    assign phase_start_o[5*r +: 5] = begins & {5{round_o[r]}};
+    assign phase_end_o[5*r +: 5]   = ends & {5{round_o[r]}};
+  end
+  assign phase_start_o[RoundPhases +: 3] = {first_q && state_q[MigrateZ], first_q && state_q[MigrateY],
+                                            first_q && state_q[MigrateX]};
+  assign phase_end_o[RoundPhases +: 3]   = {state_q[MigrateZ] && migrate_done_i, state_q[MigrateY] && migrate_done_i,
+                                            state_q[MigrateX] && migrate_done_i};
 
   // The state's number, for proofs.
   logic [3:0] unused_number;

@@ -5,6 +5,7 @@ module cuboct_streamer #(
   parameter int Segments    = 7,  // >= 1
   parameter int Own         = 1,  // 1: the first segment are the own particles
   parameter int Arrival     = 0,  // 1: a record may be read before its segment is complete
+  parameter int Rounds      = 1,  // above 1 a step's records may be walked again
   parameter int FilterLanes = 8,  // own slots per row
   parameter int RowBits     = 1,  // of a row's number
   parameter int SlotBits    = 4,  // of an own slot's number
@@ -21,6 +22,8 @@ module cuboct_streamer #(
   input  logic [Segments-1:0]    complete_i,   // by segment: all records are there
   input  logic [Halos-1:0]       came_i,       // by segment behind the own one: a record comes, also before run_i, not
                                                // with restart_i; it may be read from the next cycle on
+  input  logic                   again_i,      // with restart_i: the same records once more; Rounds above 1
+  input  logic [Halos*CountBits-1:0] counts_i,  // with again_i: by segment behind the own one
   output logic [Segments-1:0]    pick_o,       // segment, a bit each; none if past_o
   output logic [AddrBits-1:0]    addr_o,       // the record's number in its segment
   output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
@@ -54,6 +57,12 @@ module cuboct_streamer #(
     localparam int IsOwn = (Own != 0 && g == 0) ? 1 : 0;
     logic [CountBits-1:0] left_d, left_q;
     logic                 some_d, some_q, one_d, one_q, meets;
+    logic [CountBits-1:0] all;  // that are walked again
+    if (Rounds > 1 && IsOwn == 0) begin : gen_again
+      assign all = counts_i[(g-Own)*CountBits +: CountBits] & {CountBits{again_i}};
+    end else begin : gen_once
+      assign all = '0;
+    end
     assign meets = done && pick_q[g];
     always_comb begin
       left_d = left_q;
@@ -69,9 +78,9 @@ module cuboct_streamer #(
         one_d  = (left_q == Two);
       end
       if (restart_i) begin
-        left_d = '0;
-        some_d = 1'b0;
-        one_d  = 1'b0;
+        left_d = all;
+        some_d = (all != '0);
+        one_d  = (all == One);
       end
       if (IsOwn != 0 && !run_i) begin
         left_d = own_i;
@@ -163,4 +172,6 @@ module cuboct_streamer #(
   assign slot_o    = record_q[SlotBits-1:0];
   assign row_o     = row_q;
   assign past_o    = (pick_q == '0);
+  logic unused_again;
+  assign unused_again = ^{again_i, counts_i};
 endmodule

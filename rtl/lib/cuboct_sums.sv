@@ -8,6 +8,7 @@ module cuboct_sums #(
   parameter int SumBits  = 28,  // of one axis of a sum, >= KickBits + clog2(3^Axes * Capacity)
   parameter int Capacity = 16,
   parameter int Spaced   = 0,   // 0, 1
+  parameter int Adds     = 0,   // 1: push_i is the kick itself
   parameter int SlotBits = 4    // of a slot's number, >= clog2(Capacity)
 ) (
   input  logic                  clk_i,
@@ -36,7 +37,11 @@ module cuboct_sums #(
     cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
       .a_i($signed(push_i[a*KickBits +: KickBits])), .y_o(push)
     );
-    assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
+    if (Adds != 0) begin : gen_add
+      assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] + push;
+    end else begin : gen_subtract
+      assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] - push;
+    end
   end
 
   // Each slot by itself: a kick and a take never come in one cycle.

@@ -61,9 +61,10 @@ void note(Seen& seen, const Plan& plan, const Golden& golden, const std::vector<
 }
 
 // The first event that the model counts otherwise than the clocked nodes of a run without a stop.
-std::string other_events(const MachineEvents& events, const Trace& trace, Seen& seen) {
+std::string other_events(const MachineEvents& events, const Trace& trace, bool text, Seen& seen) {
   for (const auto& [name, count] : event_names()) {
-    if (std::string(name) == "steps") continue;
+    // How many pairs of a rule of text count, golden does not tell.
+    if (std::string(name) == "steps" || (text && count == &MachineEvents::kicks)) continue;
     const auto found = std::ranges::find(trace.counters, name, &std::pair<std::string, double>::first);
     if (found == trace.counters.end()) return fmt::format("no counter of {}", name);
     if (static_cast<double>(events.*count) != found->second)
@@ -72,7 +73,8 @@ std::string other_events(const MachineEvents& events, const Trace& trace, Seen& 
   }
   std::array<uint64_t, kPhases> cycles{};
   for (size_t k = 0; k < trace.cycles.size(); ++k)
-    cycles[k % kPhases] += trace.cycles[k].end + 1 - trace.cycles[k].start;
+    cycles[static_cast<size_t>(phase_at(static_cast<int>(k % trace.phases()), trace.rounds).kind)] +=
+        trace.cycles[k].end + 1 - trace.cycles[k].start;
   if (cycles != events.phase_cycles) return "other cycles of phases";
   if (events.steps != trace.steps() * trace.nodes) return "other steps of nodes";
   return {};
@@ -101,6 +103,7 @@ emu::CellSlots slots_of(const FixedRule& rule, const Golden& golden) {
     for (const Particle& p : cell) {
       const Int3 x = visible(rule, p.x);
       for (size_t a = 0; a < 3; ++a) slots.x[a].push_back(static_cast<int32_t>(x[a]));
+      slots.id.push_back(p.id);
     }
   }
   slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));
@@ -114,9 +117,9 @@ std::string difference(const Case& c, Seen& seen, int threads) {
   const Trace trace = run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain").trace;
   const uint32_t nodes = plan.nodes();
 
-  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, c.setup.initial);
+  Golden golden = golden_of(c.setup);
   auto model = std::make_unique<emu::TimingModel>(plan, threads);
-  std::vector<PhaseSpan> spans(size_t{nodes} * kPhases);
+  std::vector<PhaseSpan> spans(spans_of_step(plan));
   MachineEvents events;
   emu::KickCounter kicks(plan, threads);
   std::vector<MachineEvents> kicked(nodes);
@@ -124,7 +127,7 @@ std::string difference(const Case& c, Seen& seen, int threads) {
     const auto slots = slots_of(plan.rule, golden);
     const auto before = places_of(golden);
     const Golden old = golden;
-    kicks.add(golden.state().particles, kicked);
+    if (!plan.program) kicks.add(golden.state().particles, kicked);
     golden.step();
     const auto leaving = leaving_between(plan.lattice, before, places_of(golden));
     note(seen, plan, old, leaving);
@@ -141,8 +144,8 @@ std::string difference(const Case& c, Seen& seen, int threads) {
       const PhaseSpan expected = trace.cycles[step * spans.size() + k];
       if (spans[k] == expected) continue;
       return fmt::format("{}, step {}, node {}, {}: cycles {} to {}, expected {} to {}", c.name, step,
-                         k / kPhases, to_string(static_cast<Phase>(k % kPhases)), spans[k].start,
-                         spans[k].end, expected.start, expected.end);
+                         k / trace.phases(), phase_name(static_cast<int>(k % trace.phases()), trace.rounds),
+                         spans[k].start, spans[k].end, expected.start, expected.end);
     }
   }
   if (!trace.stop) {
@@ -151,7 +154,7 @@ std::string difference(const Case& c, Seen& seen, int threads) {
     if (cycles != counted) return fmt::format("{}: {} cycles, expected {}", c.name, cycles, counted);
     events += sum(model->events());
     events += sum(kicked);
-    const std::string other = other_events(events, trace, seen);
+    const std::string other = other_events(events, trace, plan.program != nullptr, seen);
     if (!other.empty()) return fmt::format("{}: {}", c.name, other);
   }
   count_work(seen, *model);

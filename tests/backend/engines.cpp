@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "model/contract/golden.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::test {
 namespace {
@@ -31,10 +31,18 @@ std::string first_difference(uint64_t step, const State& expected, const State& 
     text.pop_back();
     return text;
   }
+  if (expected.fields != got.fields) return fmt::format("step {}: other fields", step);
   return {};
 }
 
 }  // namespace
+
+Golden golden_of(const Setup& setup) {
+  const Plan& plan = setup.plan;
+  return plan.program ? Golden(plan.program->program, plan.lattice, plan.arch.capacity, setup.initial,
+                               plan.program->rows)
+                      : Golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
+}
 
 GoldenRun run_golden(const Setup& setup, uint64_t steps) {
   GoldenRun run;
@@ -47,7 +55,7 @@ GoldenRun run_golden(const Setup& setup, uint64_t steps) {
     }
   };
   try {
-    Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
+    Golden golden = golden_of(setup);
     keep(golden);
     for (uint64_t k = 0; k < steps; ++k) {
       golden.step();

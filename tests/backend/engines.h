@@ -8,6 +8,7 @@
 
 #include "emu/machine/loop_bench.h"
 #include "hw/plan/setup.h"
+#include "model/contract/golden.h"
 
 namespace cuboct::test {
 
@@ -17,6 +18,8 @@ struct GoldenRun {
   std::vector<std::vector<std::vector<uint32_t>>> order;  // [step][cell] ids
   std::optional<RunError> fault;
 };
+// Of the pair law, or the rule of text that the plan has.
+Golden golden_of(const Setup& setup);
 GoldenRun run_golden(const Setup& setup, uint64_t steps);
 
 // Options that keep every state and the order of the slots.

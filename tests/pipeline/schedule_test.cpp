@@ -4,14 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <set>
-#include <sstream>
-
 #include "hw/pipeline/schedule_check.h"
 #include "tests/graph/random_graph.h"
+#include "tests/pipeline/pipelines.h"
+#include "tests/pipeline/rules.h"
 #include "tests/pipeline/step_values.h"
-#include "tests/rules/in_integers.h"
 
 namespace cuboct::test {
 namespace {
@@ -31,15 +28,6 @@ std::vector<int> all_values(const Graph& graph) {
   return all;
 }
 
-// Whether a node's value may be any where the pair does not count.
-std::vector<bool> counted_alone(const Graph& graph) {
-  std::vector<bool> all;
-  for (const graph::Node& node : graph.nodes)
-    all.push_back(node.op == Op::within ||
-                  std::ranges::any_of(node.inputs, [&](int k) { return all[static_cast<size_t>(k)]; }));
-  return all;
-}
-
 TEST(PipelineSteps, AreWorthWhatTheInterpreterSays) {
   std::map<Op, uint64_t> met;
   std::map<Kind, uint64_t> kinds;
@@ -50,7 +38,7 @@ TEST(PipelineSteps, AreWorthWhatTheInterpreterSays) {
     const std::vector<int> outputs = all_values(graph);
     const pipeline::Steps steps = pipeline::steps_of(graph, outputs);
     for (const pipeline::Step& step : steps.steps) ++kinds[step.kind];
-    const std::vector<bool> alone = counted_alone(graph);
+    const std::vector<bool> alone = taken_for_granted(graph);
     bool fault_alone = false;
     for (size_t n = 0; n < alone.size(); ++n)
       fault_alone = fault_alone || (graph.nodes[n].op == Op::check && alone[n]);
@@ -104,11 +92,8 @@ TEST(PipelineSchedule, OfRandomGraphsIsAccepted) {
 }
 
 TEST(PipelineSchedule, OfShippedRulesIsAccepted) {
-  for (const char* name : {"copper", "dpd", "glass", "heat", "langevin", "plastic"}) {
-    std::ostringstream text;
-    text << std::ifstream(kIntegerTexts + name + ".toml").rdbuf();
-    const std::string whole = text.str();
-    const InIntegers made(whole.substr(0, whole.find("[[stage]]")));
+  for (const char* name : kShippedRules) {
+    const InIntegers made = shipped_rule(name);
     for (const graph::Round& round : made.program.program.rounds) {
       expect_accepted(round.pair, pipeline::piped_outputs(round), std::string(name) + " pair " + round.name);
       expect_accepted(round.finish, graph::finish_outputs(made.program.program, round),
