@@ -154,7 +154,7 @@ void Host::reset() {
     throw std::runtime_error(fmt::format("port {}: the reset had no effect", port()));
 }
 
-void Host::load(uint16_t index, uint16_t node, const Bits& word, int word_bits) {
+void Host::load(uint16_t index, uint16_t node, const Word& word, int word_bits) {
   Bytes arguments;
   put(arguments, index, 2);
   for (int at = 0; at < word_bits; at += 8) put(arguments, word.get(at, std::min(8, word_bits - at)), 1);
@@ -176,9 +176,9 @@ void Host::run(uint32_t from, uint32_t steps) {
         fmt::format("port {}: the board did not start step {}: it is at {}", port(), from, state.steps));
 }
 
-std::vector<Bits> Host::read(uint16_t node, int word_bits) {
+std::vector<Word> Host::read(uint16_t node, int word_bits) {
   const size_t word_bytes = (static_cast<size_t>(word_bits) + 7) / 8;
-  std::vector<Bits> words;
+  std::vector<Word> words;
   for (int tries = 0;; ++tries) {
     if (tries > kAttempts)
       throw std::runtime_error(fmt::format("port {}: node {} cannot be read", port(), node));
@@ -198,7 +198,7 @@ std::vector<Bits> Host::read(uint16_t node, int word_bits) {
       throw std::runtime_error(fmt::format("port {}: node {}: a reply of {} bytes, status {}", port(), node,
                                            reply.size(), reply[0]));
     for (size_t k = 0; k < expected; ++k) {
-      Bits word;
+      Word word;
       for (int at = 0; at < word_bits; at += 8)
         word.put(at, std::min(8, word_bits - at), reply[3 + k * word_bytes + static_cast<size_t>(at / 8)]);
       words.push_back(word);

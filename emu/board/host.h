@@ -58,11 +58,11 @@ class Host {
   // Empties the lattice, also in the midst of a run. Velocities become those of the board's plan.
   void reset();
   // The particle with number `index` since the reset.
-  void load(uint16_t index, uint16_t node, const Bits& word, int word_bits);
+  void load(uint16_t index, uint16_t node, const Word& word, int word_bits);
   // Starts a run; `from`: steps done since the reset.
   void run(uint32_t from, uint32_t steps);
   // All particles of a node, in the order of its slots.
-  std::vector<Bits> read(uint16_t node, int word_bits);
+  std::vector<Word> read(uint16_t node, int word_bits);
   // Of the k-th type of moved_types(), axis a.
   void set_velocity(uint8_t moved, uint8_t axis, int64_t value);
   BoardFault fault(uint16_t node);

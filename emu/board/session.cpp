@@ -28,7 +28,7 @@ class Session {
     if (info_.nodes != static_cast<int>(plan.nodes()) || info_.particle_bits != word_bits())
       throw std::runtime_error(fmt::format("port {}: {} nodes, {} bits per particle do not fit plan {:016x}",
                                            host.port(), info_.nodes, info_.particle_bits, plan.hash));
-    check_words(plan);
+    check_words(plan, Bits::kWidth);  // as an emitted project holds
   }
 
   // Makes `state` the board's.
@@ -42,7 +42,7 @@ class Session {
     uint16_t index = 0;
     for (uint32_t n = 0; n < nodes.size(); ++n)
       for (const auto& [loaded, cell] : nodes[n]) {
-        Bits word = loaded;
+        Word word = loaded;
         word.put(plan_.words.particle_bits, plan_.bricks.cell_bits(), cell);
         host_.load(index++, static_cast<uint16_t>(n), word, word_bits());
       }
@@ -65,7 +65,7 @@ class Session {
     State state;
     state.step = step;
     for (uint32_t n = 0; n < plan_.nodes(); ++n)
-      for (const Bits& word : host_.read(static_cast<uint16_t>(n), word_bits())) {
+      for (const Word& word : host_.read(static_cast<uint16_t>(n), word_bits())) {
         const Slot slot = unpack_particle(plan_, word);
         Particle p;
         p.id = slot.body.id;

@@ -337,12 +337,15 @@ void LatticeEngine::slots(CellSlots& out) const {
   }
   out.first[cells] = at;
   for (auto& x : out.x) x.resize(at);
+  const bool bonded = impl_->plan_.program && impl_->plan_.program->rows;
+  if (bonded) out.id.resize(at);
   const int64_t mask = (int64_t{1} << impl_->plan_.rule.widths.position_frac) - 1;
   const auto write = [&](size_t begin, size_t end) {
     for (auto n = static_cast<uint32_t>(begin); n < end; ++n) {
       uint32_t k = out.first[n];
       impl_->members_.for_each(n, [&](uint32_t id) {
         const uint32_t p = impl_->index_(id);
+        if (bonded) out.id[k] = id;
         for (int a = 0; a < 3; ++a)
           out.x[a][k] = static_cast<int32_t>(static_cast<int64_t>(impl_->particles_.x[a][p]) & mask);
         ++k;

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "emu/machine/words.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 namespace {
@@ -24,7 +24,7 @@ void sort_by_id(State& state) {
   std::vector<size_t> order(state.particles.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::ranges::sort(order, {}, [&](size_t k) { return state.particles[k].id; });
-  State sorted{state.step, {}};
+  State sorted{state.step, {}, {}, std::move(state.bonds), std::move(state.bond_begin)};
   for (const size_t k : order) {
     sorted.particles.push_back(state.particles[k]);
     const auto fields = state.fields.begin() + static_cast<ptrdiff_t>(k * numbers);
@@ -33,15 +33,41 @@ void sort_by_id(State& state) {
   state = std::move(sorted);
 }
 
-Bits load_word(const Plan& plan, const Particle& particle, std::span<const int64_t> fields) {
+// The particle's row as packed, with the numbers that `state` has of its bonds.
+void fill_row(const Plan& plan, const State& state, Slot& slot) {
+  const graph::BondRows& rows = *plan.program->rows;
+  const graph::FixedProgram& program = plan.program->program;
+  const auto numbers = static_cast<size_t>(program.bond_numbers());
+  const uint32_t id = slot.body.id;
+  slot.bonds.assign(static_cast<size_t>(plan.words.bonds), {id, 0});
+  slot.bond_numbers.assign(slot.bonds.size() * numbers, 0);
+  const std::vector<int64_t> beginning = beginning_of(program.bonds);
+  for (uint64_t b = rows.first[id]; b < rows.first[id + 1]; ++b) {
+    const size_t place = b - rows.first[id];
+    slot.bonds[place] = {rows.other[b], rows.kind[b]};
+    std::copy_n(state.bonds.empty() ? beginning.begin()
+                                    : state.bonds.begin() + static_cast<ptrdiff_t>(b * numbers),
+                numbers, slot.bond_numbers.begin() + static_cast<ptrdiff_t>(place * numbers));
+  }
+}
+
+// Of particle number `k` of the state.
+Word load_word(const Plan& plan, const State& state, size_t k) {
+  const Particle& particle = state.particles[k];
+  const size_t numbers = state.fields.size() / state.particles.size();
+  const auto fields = std::span(state.fields).subspan(k * numbers, numbers);
   Slot slot;
   put_position(plan.rule.widths, particle.x, slot);
   slot.body.v = particle.v;
   slot.body.type = particle.type;
   slot.body.id = particle.id;
   slot.body.fields.assign(fields.begin(), fields.end());
+  if (plan.program && fields.empty()) slot.body.fields = beginning_of(plan.program->program.fields);
   slot.u = particle.u;
-  return pack_particle(plan, slot);
+  if (plan.program && plan.program->rows) fill_row(plan, state, slot);
+  Word word;
+  pack_particle(plan, slot, word);
+  return word;
 }
 
 }  // namespace
@@ -66,12 +92,10 @@ uint64_t patience_of(const Plan& plan, double stall_rate) {
 std::vector<std::vector<Loaded>> by_node(const Plan& plan, const State& initial) {
   std::vector<std::vector<Loaded>> cells(plan.lattice.size());
   const Particle* first = nullptr;  // that found its cell full; `initial` ascends in id
-  const size_t numbers = initial.fields.size() / std::max<size_t>(1, initial.particles.size());
   for (size_t k = 0; k < initial.particles.size(); ++k) {
     const Particle& p = initial.particles[k];
     if (static_cast<int>(cells[p.cell].size()) < plan.arch.capacity)
-      cells[p.cell].push_back({load_word(plan, p, std::span(initial.fields).subspan(k * numbers, numbers)),
-                               plan.local_of(p.cell)});
+      cells[p.cell].push_back({load_word(plan, initial, k), plan.local_of(p.cell)});
     else if (first == nullptr)
       first = &p;
   }
@@ -88,7 +112,7 @@ std::vector<std::vector<Loaded>> by_node(const Plan& plan, const State& initial)
 
 void load(const std::vector<Loaded>& particles, size_t k, Control& control) {
   control.load_valid = k < particles.size();
-  control.load_data = control.load_valid ? particles[k].word : Bits{};
+  control.load_data = control.load_valid ? particles[k].word : Word{};
   control.load_cell = control.load_valid ? particles[k].cell : 0;
 }
 
@@ -106,6 +130,8 @@ Collector::Collector(const Plan& plan, const RunOptions& options)
   trace_.plan_hash = plan.hash;
   trace_.nodes = nodes_;
   trace_.rounds = rounds_;
+  if (plan.program && plan.program->rows && plan.program->program.bond_numbers() > 0)
+    bond_begin_ = begins_of(*plan.program->rows, plan.program->program.bond_numbers());
 }
 
 Collector::Snapshot& Collector::snapshot(uint64_t step) {
@@ -118,6 +144,21 @@ Collector::Snapshot& Collector::snapshot(uint64_t step) {
 uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
   const uint32_t cell = plan_.cell_of(node, local);
   return cell != kNoCell ? cell : plan_.first_cell_of(node);
+}
+
+// A row goes where its particle goes, and but for its numbers nothing changes it.
+void Collector::check_bonds(uint32_t node, const Slot& slot) const {
+  const graph::BondRows& rows = *plan_.program->rows;
+  const uint32_t id = slot.body.id;
+  const uint64_t first = rows.first[id], bonds = rows.first[id + 1] - first;
+  for (size_t k = 0; k < slot.bonds.size(); ++k) {
+    const Bond& bond = slot.bonds[k];
+    const bool same = k < bonds ? bond.other == rows.other[first + k] && bond.kind == rows.kind[first + k]
+                                : bond.other == id;
+    if (!same)
+      throw std::runtime_error(fmt::format("step {}: particle {} holds a bond to {} in place {}", step_[node],
+                                           id, bond.other, k));
+  }
 }
 
 void Collector::observe(uint32_t node, const NodeOutputs& out) {
@@ -135,10 +176,18 @@ void Collector::observe(uint32_t node, const NodeOutputs& out) {
   p.u = slot.u;
   Snapshot& s = snapshot(step);
   const std::vector<int64_t>& fields = slot.body.fields;
-  s.hash += plan_.program ? hash_of(plan_.lattice, p, fields) : hash_of(plan_.lattice, p);
+  if (!slot.bonds.empty()) check_bonds(node, slot);
+  std::span<const int64_t> bonds;
+  if (!bond_begin_.empty())
+    bonds = std::span(slot.bond_numbers).first(bond_begin_[p.id + 1] - bond_begin_[p.id]);
+  s.hash += hash_of(plan_.lattice, p, fields, bonds);
   if (s.kept || options_.keep_last) {
     s.state.particles.push_back(p);
     s.state.fields.insert(s.state.fields.end(), fields.begin(), fields.end());
+    if (!bond_begin_.empty()) {
+      if (s.state.bonds.empty()) s.state.bonds.resize(bond_begin_.back()), s.state.bond_begin = bond_begin_;
+      std::ranges::copy(bonds, s.state.bonds.begin() + static_cast<ptrdiff_t>(bond_begin_[p.id]));
+    }
   }
   if (options_.keep_order) {
     if (order_.size() <= step)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "emu/machine/wire_faults.h"
+#include "emu/machine/words.h"
 #include "hw/plan/plan.h"
 #include "model/trace/trace.h"
 
@@ -35,7 +36,7 @@ uint64_t patience_of(const Plan& plan, double stall_rate);
 
 // A particle as the load port takes it: its word, and the cell of a brick.
 struct Loaded {
-  Bits word;
+  Word word;
   uint32_t cell = 0;
 };
 // The particles by physical node, in the order in which they are loaded: by cell, within a cell by id. Throws
@@ -83,6 +84,7 @@ class Collector {
   Snapshot& snapshot(uint64_t step);
   void observe(uint32_t node, const NodeOutputs& out);
   uint32_t cell_of(uint32_t node, uint32_t local) const;
+  void check_bonds(uint32_t node, const Slot& slot) const;
   void complete(uint64_t step);
   void keep(State state);
   void close(uint64_t cycle);
@@ -95,6 +97,7 @@ class Collector {
   const size_t phases_;    // of a step
   const int shown_phase_;  // with whose end a node has shown its particles
   const int last_phase_;   // of a step
+  std::vector<uint64_t> bond_begin_;  // State::bond_begin; empty where rounds write no bonds
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in
   std::vector<bool> stopped_;              // per node: back in IDLE

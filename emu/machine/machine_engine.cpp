@@ -75,7 +75,8 @@ const State& MachineRun::state() const {
 }
 
 std::vector<Int3> MachineIntegers::next_velocities() {
-  return GoldenIntegers(plan_.program->program, plan_.lattice, plan_.arch.capacity, run_.state())
+  return GoldenIntegers(plan_.program->program, plan_.lattice, plan_.arch.capacity, run_.state(),
+                        plan_.program->rows)
       .next_velocities();
 }
 

@@ -30,7 +30,7 @@ struct Control {
   uint32_t steps = 0;
   bool load_valid = false;
   uint32_t load_cell = 0;  // of a brick
-  Bits load_data;
+  Word load_data;
   bool operator==(const Control&) const = default;
 };
 
@@ -53,7 +53,6 @@ struct NodeOutputs {
   // Of the cycle.
   uint32_t phase_start = 0, phase_end = 0;  // bit p: number p of the step's phases (model/trace/trace.h)
   bool observe = false, fault = false, idle = false;
-  Bits observe_data;                          // where `observe`
   uint32_t observe_cell = 0, fault_cell = 0;  // of a brick: where `observe`, where `fault`
   uint8_t fault_code = 0;                     // these where `fault`
   // Of a rule of text, what the node was doing: twice the round, one more in its finish, two more in a
@@ -70,6 +69,7 @@ struct NodeOutputs {
   // Where the node writes link_end_o and link_data_o of the loaded faces: the caller's, who may put another
   // place here between calls. None where there is no link.
   std::array<Beat*, kFaces> beat{};
+  Word observe_data;  // where `observe`; last, as it is long and seldom touched
 };
 
 using Counters = std::vector<std::pair<std::string, double>>;

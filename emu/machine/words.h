@@ -21,9 +21,17 @@ struct Candidate {
   std::vector<int64_t> fields;  // of a rule of text: its numbers, those of others as far as they were sent
 };
 
+// A place in a particle's row of bonds.
+struct Bond {
+  uint32_t other = 0;  // the partner's id; where there is no bond, the particle's own
+  uint32_t kind = 0;   // as of BondRows
+};
+
 // A particle in a slot.
 struct Slot {
   Candidate body;                    // x: visible
+  std::vector<Bond> bonds;           // of a bonded rule: Words::bonds places
+  std::vector<int64_t> bond_numbers;  // of each place FixedProgram::bond_numbers()
   std::array<int32_t, 3> residue{};  // the G bits of the position below those
   Int3 u{};
   std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
@@ -33,18 +41,19 @@ struct Slot {
 Int3 position_of(const Widths& widths, const Slot& slot);
 void put_position(const Widths& widths, const Int3& x, Slot& slot);
 
-// Throws InputError where a word is wider than Bits.
-void check_words(const Plan& plan);
+// Throws InputError where a record is wider than `most` bits, or a checked beat than Bits.
+void check_words(const Plan& plan, int most = Word::kWidth);
 
 // In place, as a record's way through a link is what a busy lattice does most. `out` must hold zeros. `cell`:
 // of a plan with bricks.
-void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, Bits& out);
+void pack_halo(const Plan& plan, const Candidate& candidate, uint32_t cell, std::span<uint64_t> out);
 // In the frame of the sender; returns the cell, 0 without bricks.
-uint32_t unpack_halo(const Plan& plan, const Bits& bits, Candidate& out);
+uint32_t unpack_halo(const Plan& plan, std::span<const uint64_t> bits, Candidate& out);
 // The same of a later round's record: its fields alone.
-void pack_later(const WordLayout& record, std::span<const int64_t> fields, Bits& out);
-void unpack_later(const WordLayout& record, const Bits& bits, std::span<int64_t> fields);
-Bits pack_particle(const Plan& plan, const Slot& slot);
-Slot unpack_particle(const Plan& plan, const Bits& bits);
+void pack_later(const WordLayout& record, std::span<const int64_t> fields, std::span<uint64_t> out);
+void unpack_later(const WordLayout& record, std::span<const uint64_t> bits, std::span<int64_t> fields);
+// `out` must hold zeros.
+void pack_particle(const Plan& plan, const Slot& slot, std::span<uint64_t> out);
+Slot unpack_particle(const Plan& plan, std::span<const uint64_t> bits);
 
 }  // namespace cuboct::emu

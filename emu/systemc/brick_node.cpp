@@ -57,9 +57,8 @@ bool BrickNode::walk_on(size_t count) {
 }
 
 void BrickNode::observe(const Slot& slot) {
-  out_->observe = true;
+  show(slot);
   out_->observe_cell = walked();
-  out_->observe_data = pack_particle(plan_, slot);
 }
 
 // The linked faces that this pass of an exchange sends to: both at once where the brick is one cell thick.
@@ -97,7 +96,7 @@ void BrickNode::exchange() {
   if (!can_load(faces)) return;
   const BrickWalk::Sent& from = layer[place_];
   if (beat_ == 0) {
-    word_ = {};
+    word_.clear(plan_.words.halo_beats * plan_.words.link_bits);
     count_relayed(from.local >= 0);
     pack_halo(plan_,
               from.local >= 0 ? cells_.own[static_cast<size_t>(from.local)][record_].body
@@ -203,7 +202,7 @@ bool BrickNode::leave(uint32_t local, const Slot& slot) {
   }
   if (!can_load(bit(face))) return false;
   if (beat_ == 0) {
-    word_ = pack_particle(plan_, slot);
+    take_up(slot);
     word_.put(plan_.words.particle_bits, plan_.words.migrate_cell_bits, grid_.migrate_tag(a, at));
   }
   load_slice(face);
@@ -274,16 +273,16 @@ void BrickNode::dump() {
   if (walk_on(slots.size())) enter(Main::idle);
 }
 
-void BrickNode::take_particle(int face, const Bits& record) {
+void BrickNode::take_particle(int face, std::span<const uint64_t> record) {
   const int a = face / 2;
   const auto tag =
-      static_cast<uint32_t>(record.get(plan_.words.particle_bits, plan_.words.migrate_cell_bits));
+      static_cast<uint32_t>(get_bits(record, plan_.words.particle_bits, plan_.words.migrate_cell_bits));
   const Cell at = grid_.of_migrate_tag(a, tag % grid_.migrate_tags(a), face % 2 == 1 ? extent_[a] - 1 : 0);
   Mover& mover = inbox_[face].emplace_back(Mover{grid_.local(at), unpack_particle(plan_, record)});
   mover.slot.away[static_cast<size_t>(a)] = 0;
 }
 
-void BrickNode::take_halo(int face, int, const Bits& record) {
+void BrickNode::take_halo(int face, int, std::span<const uint64_t> record) {
   const int a = face / 2;
   Candidate candidate;
   const uint32_t tag = unpack_halo(plan_, record, candidate);

@@ -32,8 +32,8 @@ class BrickNode final : public NodeMachine {
   void migrate() override;
   void dump() override;
   void clear_halos() override;
-  void take_particle(int face, const Bits& record) override;
-  void take_halo(int face, int round, const Bits& record) override;
+  void take_particle(int face, std::span<const uint64_t> record) override;
+  void take_halo(int face, int round, std::span<const uint64_t> record) override;
   uint8_t awaited() const override;
 
   bool walk_on(size_t count);

@@ -6,20 +6,27 @@
 #include <optional>
 
 #include "emu/systemc/planar.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
+namespace {
+
+constexpr auto kId = &std::pair<uint32_t, uint32_t>::first;
+
+}  // namespace
 
 // An entry is a (record, pass).
 struct ForceEngine::Stream : ForceStream {
   std::vector<const Candidate*> record;  // of all segments
   uint32_t passes = 1;
   PlanarSlots own;
+  std::vector<std::pair<uint32_t, uint32_t>> partners;  // of a bonded rule: (id, own slot), ascending
 };
 
-ForceEngine::ForceEngine(const Plan& plan, const std::vector<Slot>& own,
+ForceEngine::ForceEngine(const Plan& plan, std::vector<Slot>& own,
                          const std::array<std::vector<Candidate>, kFaces>& halo, const HaloTimes& times,
                          FaultKeeper& fault)
-    : ForceMachine(plan, 1, fault), own_(own), halo_(halo), times_(times) {
+    : ForceMachine(plan, 1, fault), own_(own), halo_(halo), times_(times), bonded_(plan.program && plan.program->program.bonded) {
   if (plan.program) rounds_ = std::make_unique<RoundWork>(plan, own, fault);
 }
 
@@ -27,6 +34,13 @@ void ForceEngine::begin_filter(Stream& stream) const {
   stream.record.clear();
   stream.mask.clear();
   stream.passes = (static_cast<uint32_t>(own_.size()) + lanes_ - 1) / lanes_;
+  if (bonded_) {
+    stream.partners.clear();
+    for (uint32_t k = 0; k < own_.size(); ++k)
+      for (const Bond& bond : own_[k].bonds) stream.partners.emplace_back(bond.other, k);
+    std::ranges::sort(stream.partners);
+    return;
+  }
   stream.own.clear();
   for (const Slot& s : own_) stream.own.add(s.body.x, test_.shift());
 }
@@ -34,7 +48,11 @@ void ForceEngine::begin_filter(Stream& stream) const {
 void ForceEngine::meet_slots(Stream& stream, const Candidate& c, uint32_t self) const {
   const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes_);
   stream.record.push_back(&c);
-  PlanarMask met = test_(stream.own, c.x);
+  PlanarMask met;
+  if (bonded_)
+    for (const auto& [id, slot] : std::ranges::equal_range(stream.partners, c.id, {}, kId)) met.set(slot);
+  else
+    met = test_(stream.own, c.x);
   if (self < own_.size()) met.clear(self);
   for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes_) & lane_mask);
 }

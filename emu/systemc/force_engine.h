@@ -22,7 +22,8 @@ struct HaloTimes {
 class ForceEngine final : public ForceMachine {
  public:
   // Keeps references to all; writes `fault`. `times` is used where halos are used on arrival.
-  ForceEngine(const Plan& plan, const std::vector<Slot>& own,
+  // Of a bonded rule it writes the bonds of `own` too.
+  ForceEngine(const Plan& plan, std::vector<Slot>& own,
               const std::array<std::vector<Candidate>, kFaces>& halo, const HaloTimes& times,
               FaultKeeper& fault);
 
@@ -42,10 +43,11 @@ class ForceEngine final : public ForceMachine {
   void count_faces(const Stream& stream);
   void issue(const Stream& stream, uint32_t entry, uint64_t& mask);
 
-  const std::vector<Slot>& own_;
+  std::vector<Slot>& own_;
   const std::array<std::vector<Candidate>, kFaces>& halo_;
   const HaloTimes& times_;
   const PlanarTest test_{plan_.rule};
+  const bool bonded_;
 };
 
 }  // namespace cuboct::emu

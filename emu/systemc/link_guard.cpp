@@ -16,6 +16,7 @@ BeatCode::BeatCode(const Plan& plan)
     : code(plan.link),
       link_bits(plan.words.link_bits),
       sequence_mask((1u << code.sequence_bits) - 1),
+      words_(static_cast<size_t>(code.wire_bits + 1 + 63) / 64),
       crc_(code.beat) {
   const CrcTable ack(code.ack);
   for (uint32_t s = 0; s < acks_.size(); ++s) {
@@ -25,24 +26,29 @@ BeatCode::BeatCode(const Plan& plan)
 }
 
 void BeatCode::seal(const Beat& beat, uint32_t sequence, Beat& wire) const {
-  wire = beat;
+  wire.end = beat.end;
   Bits& w = wire.payload;
+  copy(beat.payload, w);
   w.put(link_bits, 1, beat.end);
   w.put(link_bits + 1, code.sequence_bits, sequence);
   const uint32_t check = crc_(w.word.data(), link_bits + 1 + code.sequence_bits);
-  w = beat.payload;
+  copy(beat.payload, w);
   w.put(link_bits, code.sequence_bits, sequence);
   w.put(link_bits + code.sequence_bits, code.beat.width, check);
 }
 
 bool BeatCode::open(const Beat& wire, Beat& beat) const {
   beat.end = wire.end;
-  beat.payload = wire.payload.slice(0, link_bits);
-  Bits message = beat.payload;
-  message.put(link_bits, 1, wire.end);
-  message.put(link_bits + 1, code.sequence_bits, sequence(wire));
-  return crc_(message.word.data(), link_bits + 1 + code.sequence_bits) ==
-         wire.payload.get(link_bits + code.sequence_bits, code.beat.width);
+  const auto take = [&] {
+    std::fill_n(beat.payload.word.begin(), words_, 0);
+    wire.payload.slice(0, link_bits, beat.payload);
+  };
+  take();
+  beat.payload.put(link_bits, 1, wire.end);
+  beat.payload.put(link_bits + 1, code.sequence_bits, sequence(wire));
+  const uint32_t check = crc_(beat.payload.word.data(), link_bits + 1 + code.sequence_bits);
+  take();
+  return check == wire.payload.get(link_bits + code.sequence_bits, code.beat.width);
 }
 
 LinkGuard::LinkGuard(std::shared_ptr<const BeatCode> code, uint8_t has_link, std::unique_ptr<NodeModel> node)
@@ -93,10 +99,14 @@ bool LinkGuard::send(int face, bool wire_ready, uint16_t ack, NodeOutputs& out) 
     Beat& wire = *out.beat[face];
     const size_t slot = s.next % static_cast<uint32_t>(code.window);
     if (replay) {
-      wire = s.kept[slot];
+      wire.end = s.kept[slot].end;
+      code_->copy(s.kept[slot].payload, wire.payload);
     } else {
       code_->seal(loaded_[face], s.next, wire);
-      if (retry_) s.kept[slot] = wire;
+      if (retry_) {
+        s.kept[slot].end = wire.end;
+        code_->copy(wire.payload, s.kept[slot].payload);
+      }
     }
     out.loaded |= bit(face);
   }

@@ -27,11 +27,15 @@ class BeatCode {
   uint16_t acknowledge(uint32_t sequence) const { return acks_[sequence]; }
   bool acknowledges(uint16_t ack) const { return acks_[ack & sequence_mask] == ack; }
 
+  // The words that a beat of a wire fills.
+  void copy(const Bits& from, Bits& to) const { std::copy_n(from.word.begin(), words_, to.word.begin()); }
+
   const LinkCode code;
   const int link_bits;
   const uint32_t sequence_mask;
 
  private:
+  const size_t words_;
   CrcTable crc_;
   std::array<uint16_t, 16> acks_{};
 };

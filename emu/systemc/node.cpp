@@ -64,7 +64,7 @@ void Node::begin() {
                                                                 : Migrate::end;
 }
 
-void Node::pack_relayed(int segment, int record, Bits& out) const {
+void Node::pack_relayed(int segment, int record, std::span<uint64_t> out) const {
   if (round_ == 0) return pack_halo(plan_, relayed(segment, record), 0, out);
   const auto round = static_cast<size_t>(round_), at = static_cast<size_t>(record);
   pack_later(plan_.rounds[round].record,
@@ -134,7 +134,7 @@ void Node::relay() {
     held = !can_load(faces);
     if (!held) {
       if (beat_ == 0) {
-        word_ = {};
+        word_.clear(plan_.words.halo_beats * plan_.words.link_bits);
         pack_halo(plan_, relayed(sending_.segment, sending_.record), 0, word_);
         count_relayed(sending_.segment == 0);
       }
@@ -146,8 +146,7 @@ void Node::relay() {
   }
   if (held) return;
   if (asked_.kind == Relayed::Kind::record && asked_.segment == 0) {
-    out_->observe = true;
-    out_->observe_data = pack_particle(plan_, own_[static_cast<size_t>(asked_.record)]);
+    show(own_[static_cast<size_t>(asked_.record)]);
   }
   sending_ = std::exchange(asked_, ask());
 }
@@ -176,8 +175,7 @@ void Node::exchange() {
   }
   if (!can_load(faces_of(axis()))) return;
   if (beat_ == 0 && main_ == Main::exchange_x && round_ == 0) {
-    out_->observe = true;
-    out_->observe_data = pack_particle(plan_, own_[record_]);
+    show(own_[record_]);
   }
   const int beats = plan_.rounds[static_cast<size_t>(round_)].beats;
   if (beat_ == 0) count_relayed(segment_ == 0);
@@ -185,7 +183,7 @@ void Node::exchange() {
     for (const int f : {low, high})
       if (linked(f)) pack_relayed(segment_, record_, load(f, false));
   } else {
-    if (beat_ == 0) word_ = {}, pack_relayed(segment_, record_, word_);
+    if (beat_ == 0) word_.clear(beats * plan_.words.link_bits), pack_relayed(segment_, record_, word_);
     load_slice(low);
     load_slice(high);
   }
@@ -246,7 +244,7 @@ void Node::scan() {
   } else if (!can_load(bit(face))) {
     return;
   } else {
-    if (beat_ == 0) word_ = pack_particle(plan_, s);
+    if (beat_ == 0) take_up(s);
     load_slice(face);
     if (++beat_ < plan_.words.migrate_beats) return;
     beat_ = 0;
@@ -302,19 +300,18 @@ void Node::take(int face, Migrate next, bool last) {
 
 void Node::dump() {
   if (record_ < static_cast<int>(own_.size())) {
-    out_->observe = true;
-    out_->observe_data = pack_particle(plan_, own_[record_]);
+    show(own_[record_]);
     ++record_;
   }
   if (record_ == static_cast<int>(own_.size())) enter(Main::idle);
 }
 
-void Node::take_particle(int face, const Bits& record) {
+void Node::take_particle(int face, std::span<const uint64_t> record) {
   inbox_[face].fifo.push_back(unpack_particle(plan_, record));
   inbox_[face].came = now_;
 }
 
-void Node::take_halo(int face, int round, const Bits& record) {
+void Node::take_halo(int face, int round, std::span<const uint64_t> record) {
   if (round > 0) {
     const auto at = static_cast<size_t>(round);
     auto& numbers = later_[at % 2][static_cast<size_t>(face)].emplace_back();

@@ -32,8 +32,8 @@ class Node final : public NodeMachine {
   void migrate() override;
   void dump() override;
   void clear_halos() override;
-  void take_particle(int face, const Bits& record) override;
-  void take_halo(int face, int round, const Bits& record) override;
+  void take_particle(int face, std::span<const uint64_t> record) override;
+  void take_halo(int face, int round, std::span<const uint64_t> record) override;
   void take_halo_end(int face) override { times_.ended[static_cast<size_t>(face)] = now_; }
   uint8_t awaited() const override;
 
@@ -54,7 +54,7 @@ class Node final : public NodeMachine {
   void take(int face, Migrate next, bool last);
   const Candidate& relayed(int segment, int record) const;
   // Packs the record that is sent on in this round.
-  void pack_relayed(int segment, int record, Bits& out) const;
+  void pack_relayed(int segment, int record, std::span<uint64_t> out) const;
   int relayed_size(int segment) const;
 
   std::vector<Slot> own_;

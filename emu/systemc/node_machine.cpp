@@ -44,8 +44,20 @@ Bits& NodeMachine::load(int face, bool end) {
   return beat.payload;
 }
 
+void NodeMachine::show(const Slot& slot) {
+  out_->observe = true;
+  out_->observe_data.clear(plan_.words.particle_bits);
+  pack_particle(plan_, slot, out_->observe_data);
+}
+
+void NodeMachine::take_up(const Slot& slot) {
+  word_.clear(plan_.words.migrate_beats * plan_.words.link_bits);
+  pack_particle(plan_, slot, word_);
+}
+
 void NodeMachine::load_slice(int face) {
-  if (linked(face)) load(face, false) = word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits);
+  if (!linked(face)) return;
+  word_.slice(beat_ * plan_.words.link_bits, plan_.words.link_bits, load(face, false));
 }
 
 bool NodeMachine::load_ends(uint8_t faces) {
@@ -165,21 +177,21 @@ void NodeMachine::receive(int face, const Beat& beat) {
     return;
   }
   const int beats = migrating ? plan_.words.migrate_beats : plan_.rounds[stream].beats;
-  const Bits* record = &beat.payload;
+  std::span<const uint64_t> record = beat.payload;
   if (beats > 1) {
     Assembly& a = assembly_[face];
-    if (a.beat == 0) a.partial = {};
+    if (a.beat == 0) a.partial.clear(beats * plan_.words.link_bits);
     a.partial.join(a.beat * plan_.words.link_bits, plan_.words.link_bits, beat.payload);
     if (++a.beat < beats) return;
     a.beat = 0;
-    record = &a.partial;
+    record = a.partial;
   }
   if (migrating) {
     ++moved_;
-    take_particle(face, *record);
+    take_particle(face, record);
   } else {
     ++halos_[static_cast<size_t>(face / 2)];
-    take_halo(face, stream, *record);
+    take_halo(face, stream, record);
   }
 }
 

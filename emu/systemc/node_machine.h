@@ -63,6 +63,9 @@ class NodeMachine : public NodeModel {
   bool can_load(uint8_t faces);
   // The register of a linked face, for what is loaded in this cycle; zeros.
   Bits& load(int face, bool end);
+  // Packs a particle, for the host to see, or as `word_`.
+  void show(const Slot& slot);
+  void take_up(const Slot& slot);
   // Loads beat `beat_` of `word_`, where there is a link.
   void load_slice(int face);
   // Loads end beats, if all the faces can; whether it did.
@@ -94,8 +97,8 @@ class NodeMachine : public NodeModel {
   virtual void dump() = 0;
   virtual void clear_halos() = 0;
   // A record that has come over a face in this cycle: a particle, or one of its halo.
-  virtual void take_particle(int face, const Bits& record) = 0;
-  virtual void take_halo(int face, int round, const Bits& record) = 0;
+  virtual void take_particle(int face, std::span<const uint64_t> record) = 0;
+  virtual void take_halo(int face, int round, std::span<const uint64_t> record) = 0;
   // The end beat of a face's halo stream has come in this cycle.
   virtual void take_halo_end(int) {}
   // Faces whose particles MIGRATE_a waits for, for doing().
@@ -111,13 +114,13 @@ class NodeMachine : public NodeModel {
   // By face; of halos by the round's parity, as a neighbour may be a round ahead.
   std::array<uint8_t, 2> halo_end_{};
   uint8_t migrate_end_ = 0;
-  int beat_ = 0;                            // of `word_`, the record that is being sent
-  Bits word_;
+  int beat_ = 0;                // of `word_`, the record that is being sent
   bool sent_ = false;           // EXCHANGE_a has loaded its end beats
   uint64_t now_ = 0;            // the cycle that runs
   uint64_t phase_last_ = 0;     // the last cycle of FORCE or UPDATE, known from its start
   uint64_t wakes_at_ = 0;       // as wakes_at()
   NodeOutputs* out_ = nullptr;  // of the cycle that runs
+  Word word_;
   // Records read to send them on, slots read by SCAN, particles that left over a link or for another own
   // cell.
   uint64_t relayed_ = 0, relayed_own_ = 0, scanned_ = 0, left_ = 0, inner_moves_ = 0;
@@ -126,7 +129,7 @@ class NodeMachine : public NodeModel {
   // A record of several beats on its way in.
   struct Assembly {
     int beat = 0;  // that have come
-    Bits partial;
+    Word partial;
   };
 
   void idle(const Control& host);

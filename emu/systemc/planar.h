@@ -30,6 +30,7 @@ struct PlanarSlots {
 struct PlanarMask {
   std::array<uint64_t, kPlanarSlots / 64> word{};
 
+  void set(uint32_t slot) { word[slot / 64] |= uint64_t{1} << slot % 64; }
   void clear(uint32_t slot) { word[slot / 64] &= ~(uint64_t{1} << slot % 64); }
   // 64 bits from `slot` on.
   uint64_t from(uint32_t slot) const {

@@ -23,12 +23,13 @@ Seen seen(const Candidate& body, Particle& particle) {
 
 }  // namespace
 
-RoundWork::RoundWork(const Plan& plan, const std::vector<Slot>& own, FaultKeeper& fault)
+RoundWork::RoundWork(const Plan& plan, std::vector<Slot>& own, FaultKeeper& fault)
     : plan_(plan),
       program_(plan.program->program),
       own_(own),
       fault_(fault),
       partners_(static_cast<size_t>(plan.arch.capacity)) {
+  if (program_.bonded) kinds_ = plan.program->rows->kinds();
   int numbers = 0;
   for (const graph::Round& round : program_.rounds) {
     rounds_.push_back({PairRun(program_, round, 0, kLanes), FinishRun(program_, round, 0, 1)});
@@ -50,16 +51,46 @@ void RoundWork::begin(int round, uint64_t step) {
   for (auto& partners : partners_) partners.clear();
 }
 
+void RoundWork::look(size_t k) {
+  const auto& partners = partners_[k];
+  others_.resize(partners.size());
+  seen_.clear();
+  for (size_t j = 0; j < partners.size(); ++j) seen_.push_back(emu::seen(*partners[j], others_[j]));
+}
+
+// A bond that counts must be met.
+void RoundWork::join(size_t k) {
+  Slot& own = own_[k];
+  const graph::BondRows& rows = *plan_.program->rows;
+  const auto numbers = static_cast<size_t>(program_.bond_numbers());
+  const auto bond_at = [&](size_t place) {
+    // A word that a bad wire has damaged may name any kind.
+    const size_t kind = std::min(own.bonds[place].kind, kinds_ - 1);
+    return Seen{.bond = own.bond_numbers.data() + place * numbers,
+                .bond_constants = rows.constants.data() + kind * program_.bond_constants.size()};
+  };
+  met_.assign(own.bonds.size(), false);
+  for (Seen& partner : seen_) {
+    const auto at = std::ranges::find(own.bonds, partner.particle->id, &Bond::other);
+    const auto place = static_cast<size_t>(at - own.bonds.begin());
+    const Seen bond = bond_at(place);
+    partner.bond = bond.bond, partner.bond_constants = bond.bond_constants;
+    met_[place] = true;
+  }
+  for (size_t place = 0; place < met_.size(); ++place)
+    if (const uint32_t other = own.bonds[place].other;
+        !met_[place] && other != own.body.id && !is_broken(program_, bond_at(place)))
+      fault_.add(Fault::bond_lost, own.body.id, other, 0);
+}
+
 uint64_t RoundWork::add() {
   uint64_t counted = 0;
   PairRun& pair = rounds_[round_].pair;
   const auto numbers = static_cast<size_t>(program_.rounds[round_].numbers());
   for (size_t k = 0; k < own_.size(); ++k) {
-    const auto& partners = partners_[k];
+    look(k);
+    if (program_.bonded) join(k);
     Particle own;
-    others_.resize(partners.size());
-    seen_.clear();
-    for (size_t j = 0; j < partners.size(); ++j) seen_.push_back(emu::seen(*partners[j], others_[j]));
     pair.add(seen(own_[k], own), seen_, std::span(sums_).subspan(k * numbers, numbers));
     counted += pair.counted();
     for (const graph::LaneFault& f : pair.faults()) fault_.add(f.fault, own_[k].body.id, f.number, 0);

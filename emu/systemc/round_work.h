@@ -15,8 +15,8 @@ namespace cuboct::emu {
 
 class RoundWork {
  public:
-  // Keeps references to all; writes `fault`.
-  RoundWork(const Plan& plan, const std::vector<Slot>& own, FaultKeeper& fault);
+  // Keeps references to all; writes `fault`, and bonds of `own`.
+  RoundWork(const Plan& plan, std::vector<Slot>& own, FaultKeeper& fault);
 
   // The force engine of a round begins. Steps count from the start of the run.
   void begin(int round, uint64_t step);
@@ -35,10 +35,13 @@ class RoundWork {
     FinishRun finish;
   };
   Seen seen(const Slot& slot, Particle& particle) const;
+  // What the particle in slot `k` sees: all that met it, or of a bonded rule these with their bonds.
+  void look(size_t k);
+  void join(size_t k);
 
   const Plan& plan_;
   const graph::FixedProgram& program_;
-  const std::vector<Slot>& own_;
+  std::vector<Slot>& own_;
   FaultKeeper& fault_;
   std::vector<Round> rounds_;
   size_t round_ = 0;
@@ -46,6 +49,8 @@ class RoundWork {
   std::vector<int64_t> sums_;                            // by slot, then by number of the round's sums
   std::vector<Particle> others_;                         // scratch
   std::vector<Seen> seen_;
+  std::vector<bool> met_;  // by place
+  uint32_t kinds_ = 1;     // of bonds
 };
 
 }  // namespace cuboct::emu

@@ -8,6 +8,7 @@
 
 #include "emu/timing/force_time.h"
 #include "model/contract/fixed_rule.h"
+#include "model/graph/bond_rows.h"
 
 namespace cuboct::emu {
 
@@ -27,6 +28,10 @@ struct Filter {
   uint32_t lanes, pipes;
 };
 
+struct NodeSlot {
+  uint32_t node = 0, slot = 0;
+};
+
 // Particles by node. Node number `nodes` stands for one that does not exist: it holds nothing, and its
 // neighbours are itself.
 struct Places {
@@ -35,6 +40,10 @@ struct Places {
   std::array<const int32_t*, 3> x;
   const uint32_t* first;                     // nodes + 2
   const std::array<uint32_t, 6>* neighbour;  // nodes + 1
+  // Of a bonded rule, in place of x; else null.
+  const graph::BondRows* rows = nullptr;
+  const uint32_t* id = nullptr;      // of each particle
+  const NodeSlot* where = nullptr;   // by id
 };
 
 struct HitScratch {
@@ -49,5 +58,7 @@ struct HitScratch {
 
 // What the streamer of `node`, which is not empty, walks.
 ForceWork filter_node(const Filter& filter, const Places& places, uint32_t node, HitScratch& scratch);
+// The same of a bonded rule: a candidate meets the own particles that have a bond to it.
+ForceWork filter_bonds(const Filter& filter, const Places& places, uint32_t node, HitScratch& scratch);
 
 }  // namespace cuboct::emu

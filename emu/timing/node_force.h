@@ -34,7 +34,8 @@ inline void count_work(const ForceWork& work, bool queued, MachineEvents& events
 class NodeForce {
  public:
   // The engine's last cycle, counted from its first, of `node`, which is not empty. `still`: since the last
-  // call no particle of the node or of those around has moved, come, gone or changed its slot.
+  // call no particle of the node or of those around has come, gone or changed its slot, nor has it moved,
+  // unless the rule is bonded.
   int64_t time(const Filter& filter, const Places& places, uint32_t node, const ForceShape& shape,
                const Available& available, bool still, HitScratch& scratch, TimingCounters& counters,
                MachineEvents& events) {
@@ -42,7 +43,8 @@ class NodeForce {
     bool same = still && known_;
     if (!same) {
       ++counters.filtered;
-      const ForceWork work = filter_node(filter, places, node, scratch);
+      const ForceWork work = places.rows != nullptr ? filter_bonds(filter, places, node, scratch)
+                                                    : filter_node(filter, places, node, scratch);
       same = known_ && work.items == items_ && std::ranges::equal(work.entries, entries_);
       if (!same) {
         items_ = work.items, entries_.assign(work.entries.begin(), work.entries.end());

@@ -11,6 +11,7 @@ namespace cuboct::emu {
 struct CellSlots {
   std::vector<uint32_t> first;            // cells + 1: cell n holds [first[n], first[n+1])
   std::array<std::vector<int32_t>, 3> x;  // P fractional bits, in [0, 2^P)
+  std::vector<uint32_t> id;               // of a bonded rule, whose hits do not depend on x
 };
 
 // A particle that left its cell in a step.

@@ -14,6 +14,7 @@
 #include "emu/timing/migrate_time.h"
 #include "emu/timing/phase_spans.h"
 #include "model/base/parallel.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 namespace {
@@ -58,6 +59,7 @@ struct TimingModel::Impl {
   const int axes_;
   const int threads_;
   const int rounds_;
+  const graph::BondRows* const rows_;  // of a bonded rule
   const int64_t received_;
   std::vector<ForceShape> shape_;  // by round
   const Filter filter_;
@@ -71,9 +73,12 @@ struct TimingModel::Impl {
   // Of the step, nodes + 1 each: the one that does not exist is empty.
   std::array<std::vector<int32_t>, 3> x_, old_x_;  // at its start, and at that of the step before
   std::vector<uint32_t> first_, old_first_;        // one more
+  std::vector<uint32_t> id_;                       // of a bonded rule
+  std::vector<NodeSlot> where_;                    // of a bonded rule, by id
   std::vector<uint32_t> count_, final_count_;      // particles at its start, at its end
   std::vector<uint8_t> changed_;           // other particles than in the step before, or another order
-  std::vector<uint8_t> moved_, moved_x_;   // ... or another position; there, or in a neighbour along x too
+  // ... or another position, where hits depend on it; there, or in a neighbour along x too.
+  std::vector<uint8_t> moved_, moved_x_;
   std::vector<uint32_t> sent_y_, sent_z_;  // records that it sends along y, z
 
   Cycles start_;             // the step's first cycle
@@ -95,6 +100,7 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
       axes_(plan.rule.axes),
       threads_(threads > 0 ? threads : usable_cores()),
       rounds_(static_cast<int>(plan.rounds.size())),
+      rows_(plan.program ? plan.program->rows.get() : nullptr),
       received_(kReceived + plan.link.latency),
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       neighbour_(nodes_ + 1),
@@ -127,6 +133,7 @@ TimingModel::Impl::Impl(const Plan& plan, int threads)
     shape_.push_back({plan.arch.queue_depth, round.pipe, plan.rule.axes, plan.latency.interval,
                       plan.arch.narrow_memories ? round.beats : 0});
   for (auto& nodes : force_) nodes.resize(nodes_);
+  if (rows_ != nullptr) where_.resize(rows_->first.size() - 1);
   for (auto& cycles : end_) cycles.resize(nodes_);
   for (auto* beats : {&halo_end_, &migrate_end_, &migrate_start_})
     for (auto& cycles : *beats) cycles.assign(nodes_ + 1, kLongAgo);
@@ -139,6 +146,7 @@ void TimingModel::Impl::begin(const CellSlots& slots, std::span<const Leaving> l
   const size_t particles = slots.first[nodes_];
   for (const auto& x : slots.x)
     if (x.size() < particles) throw std::invalid_argument("slots without positions");
+  if (rows_ != nullptr && slots.id.size() < particles) throw std::invalid_argument("slots without ids");
   for (uint32_t n = 0; n < nodes_; ++n) {
     const uint32_t count = slots.first[n + 1] - slots.first[n];
     if (count > static_cast<uint32_t>(plan_.arch.capacity))
@@ -153,6 +161,7 @@ void TimingModel::Impl::begin(const CellSlots& slots, std::span<const Leaving> l
   std::swap(x_, old_x_);
   std::swap(first_, old_first_);
   for (auto& x : x_) x.resize(particles + Places::kBeyond);
+  if (rows_ != nullptr) id_ = slots.id;
   std::copy(slots.first.begin(), slots.first.end(), first_.begin());
   first_[nodes_ + 1] = first_[nodes_];
   for (uint32_t n = 0; n < nodes_; ++n) count_[n] = first_[n + 1] - first_[n];
@@ -168,6 +177,11 @@ void TimingModel::Impl::begin(const CellSlots& slots, std::span<const Leaving> l
 // Takes the node's particles, and notes whether they are where they were.
 void TimingModel::Impl::place(const CellSlots& slots, uint32_t n) {
   const uint32_t first = first_[n], count = count_[n], old = old_first_[n];
+  if (rows_ != nullptr) {
+    for (uint32_t slot = 0; slot < count; ++slot) where_.at(id_[first + slot]) = {n, slot};
+    moved_[n] = changed_[n];
+    return;
+  }
   bool moved = changed_[n] != 0;
   for (size_t a = 0; a < 3; ++a) {
     const int32_t* const x = slots.x[a].data() + first;
@@ -221,7 +235,8 @@ void TimingModel::Impl::exchange_y(uint32_t n) {
       sent(2, n, end + 1, {count_[n], count_[near[0]], count_[near[1]], sent_y_[near[2]], sent_y_[near[3]]});
 }
 
-// Whether the node and the 26 around hold what they held a step before, where they held it.
+// Whether hits are those of the step before: the node and the 26 around hold what they held then, and where
+// hits depend on positions, where they held it.
 bool TimingModel::Impl::still(uint32_t n) const {
   unsigned moved = 0;
   for (const uint32_t at_z : {n, neighbour_[n][4], neighbour_[n][5]})
@@ -234,7 +249,12 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
   Available available;
   for (int a = 0; a < 3; ++a) available[at(a)] = end_of(static_cast<Phase>(a), n) + 1 - begin;
   if (count_[n] == 0) return begin + idle_force_time(available, axes_);
-  const Places places{{x_[0].data(), x_[1].data(), x_[2].data()}, first_.data(), neighbour_.data()};
+  const Places places{{x_[0].data(), x_[1].data(), x_[2].data()},
+                      first_.data(),
+                      neighbour_.data(),
+                      rows_,
+                      id_.data(),
+                      where_.data()};
   return begin + force_[at(round_)][n].time(filter_, places, n, shape_[at(round_)], available, still(n), scratch.hits,
                                 scratch.counters, events_[n]);
 }

@@ -12,6 +12,7 @@
 
 #include "hw/arch/bricks.h"
 #include "model/base/integer_math.h"
+#include "model/graph/bond_rows.h"
 #include "model/graph/program.h"
 
 namespace cuboct {
@@ -25,13 +26,33 @@ void add_axes(WordLayout& layout, FieldKind kind, int first, int axes, int bits,
   for (int a = first; a < axes; ++a) add(layout, kind, bits, is_signed, a);
 }
 
-void add_number(WordLayout& layout, const graph::FixedProgram& program, int field, int component) {
-  const graph::Interval range = program.fields[static_cast<size_t>(field)].range;
+// The field `kind`, as wide as the range asks.
+WordField number_of(const WordLayout& layout, FieldKind kind, const graph::Interval& range, int number) {
   const bool is_signed = range.low < 0;
   const auto farthest = static_cast<uint64_t>(std::max(range.high, is_signed ? -(range.low + 1) : 0));
   const int bits = std::max(1, static_cast<int>(std::bit_width(farthest)) + is_signed);
-  layout.push_back(
-      {FieldKind::field, -1, bits_of(layout), bits, is_signed, program.place(field) + component});
+  return {kind, -1, bits_of(layout), bits, is_signed, number};
+}
+
+void add_number(WordLayout& layout, const graph::FixedProgram& program, int field, int component) {
+  layout.push_back(number_of(layout, FieldKind::field, program.fields[static_cast<size_t>(field)].range,
+                             program.place(field) + component));
+}
+
+void add_bonds(WordLayout& layout, const graph::FixedProgram& program, int places, int id_bits,
+               uint32_t kinds) {
+  for (int place = 0; place < places; ++place) {
+    const auto in_place = [&](WordField field) {
+      field.place = place;
+      if (field.bits > 0) layout.push_back(field);
+    };
+    in_place({FieldKind::bond_other, -1, bits_of(layout), id_bits, false});
+    in_place({FieldKind::bond_kind, -1, bits_of(layout), static_cast<int>(std::bit_width(kinds - 1)), false});
+    for (int f = 0; f < static_cast<int>(program.bonds.size()); ++f)
+      for (int n = 0; n < program.bonds[static_cast<size_t>(f)].numbers; ++n)
+        in_place(number_of(layout, FieldKind::bond_field, program.bonds[static_cast<size_t>(f)].range,
+                           program.bond_place(f) + n));
+  }
 }
 
 // What a program's rounds read of the other particle.
@@ -44,6 +65,7 @@ struct OtherReads {
 // A round sends what it reads and what no round before sent, or a finish has changed since.
 OtherReads reads_of(const graph::FixedProgram& program) {
   OtherReads reads;
+  reads.id = program.bonded;  // the filter asks for it
   std::set<std::pair<int, int>> there;
   for (const graph::Round& round : program.rounds) {
     std::vector<int> needed = pair_outputs(round);
@@ -104,16 +126,19 @@ WordLayout halo_layout(const FixedRule& r, bool bricks, int cell_bits, int id_bi
 }  // namespace
 
 std::string name_of(const WordField& field) {
-  constexpr std::array kNames{"x", "away", "v", "type", "id", "residue", "u", "field", "cell"};
+  constexpr std::array kNames{"x", "away", "v",     "type", "id",     "residue",
+                              "u", "field", "other", "kind", "number", "cell"};
   std::string name = kNames[static_cast<size_t>(field.kind)];
-  if (field.kind == FieldKind::field) name += fmt::format("_{}", field.number);
+  if (field.place >= 0) name = fmt::format("bond_{}_{}", field.place, name);
+  if (field.kind == FieldKind::field || field.kind == FieldKind::bond_field)
+    name += fmt::format("_{}", field.number);
   return field.axis < 0 ? name : name + "_" + "xyz"[field.axis];
 }
 
 int bits_of(const WordLayout& layout) { return layout.empty() ? 0 : layout.back().lsb + layout.back().bits; }
 
-Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles,
-               const graph::FixedProgram* program) {
+Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles, const graph::FixedProgram* program,
+               const graph::BondRows* rows) {
   Words words;
   const OtherReads reads = program == nullptr ? OtherReads() : reads_of(*program);
   words.id_bits = std::max(1, static_cast<int>(std::bit_width(particles > 0 ? particles - 1 : 0u)));
@@ -127,6 +152,10 @@ Words words_of(const FixedRule& r, const Arch& arch, uint32_t particles,
     }
   }
   words.particle = particle_layout(r, words.id_bits, program);
+  if (rows != nullptr) {
+    words.bonds = static_cast<int>(rows->longest());
+    add_bonds(words.particle, *program, words.bonds, words.id_bits, rows->kinds());
+  }
   words.halo = halo_layout(r, bricks, words.halo_cell_bits, words.id_bits, program, reads);
   words.halo_bits = bits_of(words.halo);
   words.particle_bits = bits_of(words.particle);

@@ -14,6 +14,7 @@ namespace cuboct {
 
 namespace graph {
 struct FixedProgram;
+struct BondRows;
 }
 
 enum class FieldKind : uint8_t {
@@ -25,6 +26,10 @@ enum class FieldKind : uint8_t {
   residue,       // the G bits of the position below the visible ones
   displacement,  // P+G fractional bits; of particles held by force
   field,         // a number that a rule of text keeps of a particle
+  // Of a place in the particle's row of bonds:
+  bond_other,  // the partner's id; where there is no bond, the particle's own
+  bond_kind,   // whose constants it has, as BondRows counts them
+  bond_field,  // a number that rounds write of it
   cell           // with bricks: as hw/arch/bricks.h numbers it
 };
 
@@ -33,10 +38,11 @@ struct WordField {
   int axis;  // 0, 1, 2; -1 where there is one for all
   int lsb, bits;
   bool is_signed;  // two's complement
-  int number = 0;  // of a field: which of FixedProgram::numbers()
+  int number = 0;  // of a field: which of FixedProgram::numbers(); of a bond's, of bond_numbers()
+  int place = -1;  // in the row of bonds
   bool operator==(const WordField&) const = default;
 };
-// "x_y": the position along y; "id".
+// "x_y": the position along y; "id"; "bond_3_other".
 std::string name_of(const WordField& field);
 
 // Least significant field first, without gaps; a field of no bits is left out.
@@ -61,11 +67,13 @@ struct Words {
   int migrate_beats = 0;                          // ceil(migrate_bits / link_bits)
   int migrate_bits = 0;                           // a particle, and with bricks the cell that it goes to
   int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
+  int bonds = 0;                                  // places of a particle's row
   int link_bits = 0;                              // as built: arch.link_bits, or the widest of all rounds' records
 };
 
-// `program`: of a rule of text; null: the pair law.
+// `program`: of a rule of text; null: the pair law. `rows`: of a bonded one; each particle has as many places
+// as the longest row has bonds.
 Words words_of(const FixedRule& rule, const Arch& arch, uint32_t particles,
-               const graph::FixedProgram* program = nullptr);
+               const graph::FixedProgram* program = nullptr, const graph::BondRows* rows = nullptr);
 
 }  // namespace cuboct

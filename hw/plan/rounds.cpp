@@ -41,7 +41,8 @@ std::vector<PlanRound> rounds_of(const Plan& plan) {
 
 void set_program(Plan& plan, std::shared_ptr<const IntegerProgram> program) {
   plan.program = std::move(program);
-  plan.words = words_of(plan.rule, plan.arch, plan.particles, &plan.program->program);
+  plan.words = words_of(plan.rule, plan.arch, plan.particles, &plan.program->program,
+                        plan.program->rows.get());
   plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
   plan.rounds = rounds_of(plan);
   Hash hash;
@@ -60,7 +61,6 @@ std::string machine_refusal(const Plan& plan) {
   if (!plan.rule.cubic()) return "its nodes have cubic cells, and no cube divides the box";
   if (plan.program == nullptr) return "";
   const Arch& arch = plan.arch;
-  if (plan.program->rows) return "it holds no bonds of the body as packed yet";
   if (plan.rounds.size() > kMostRounds)
     return fmt::format("it has {} rounds at most, and the rule {}", kMostRounds, plan.rounds.size());
   if (!plan.bricks.one_cell()) return "nodes of bricks run the pair law alone: set brick = [1, 1, 1]";

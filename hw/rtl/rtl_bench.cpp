@@ -335,6 +335,9 @@ std::string particle_hex(const Plan& plan, const Particle& particle, std::initia
           return particle.u[f.axis];
         case FieldKind::away:
         case FieldKind::field:
+        case FieldKind::bond_other:
+        case FieldKind::bond_kind:
+        case FieldKind::bond_field:
         case FieldKind::cell:
           break;
       }

@@ -23,11 +23,8 @@ FixedRule with_three_axes(FixedRule rule) {
   return rule;
 }
 
-// Zero, or the end of each field's range that is next to it.
-void add_zeros(std::vector<int64_t>& to, const std::vector<graph::Field>& fields) {
-  for (const graph::Field& field : fields)
-    to.insert(to.end(), static_cast<size_t>(field.numbers),
-              std::clamp<int64_t>(0, field.range.low, field.range.high));
+void add(std::vector<int64_t>& to, const std::vector<int64_t>& numbers) {
+  to.insert(to.end(), numbers.begin(), numbers.end());
 }
 
 auto order(const RunError& e) { return std::tuple(e.fault, e.particle, e.number); }
@@ -61,7 +58,7 @@ Golden::Golden(graph::FixedProgram program, const Lattice& lattice, int capacity
 
 void Golden::add_fields(const State& initial) {
   for (size_t b = 0; initial.bonds.empty() && rows_ && b < rows_->other.size(); ++b)
-    add_zeros(bonds_, program_->bonds);
+    add(bonds_, beginning_of(program_->bonds));
   if (program_->numbers() == 0) return;
   for (uint32_t row = 0; row < initial.particles.size(); ++row) {
     const uint32_t id = initial.particles[row].id;
@@ -70,7 +67,7 @@ void Golden::add_fields(const State& initial) {
   }
   fields_ = initial.fields;
   if (!fields_.empty()) return;
-  for (size_t k = 0; k < initial.particles.size(); ++k) add_zeros(fields_, program_->fields);
+  for (size_t k = 0; k < initial.particles.size(); ++k) add(fields_, beginning_of(program_->fields));
 }
 
 RunError Golden::fault_of(Fault fault, uint32_t cell, uint32_t particle, int64_t number) const {

@@ -17,10 +17,12 @@ uint64_t hash_of(const Lattice& lattice, const Particle& particle) {
   return hash.value();
 }
 
-uint64_t hash_of(const Lattice& lattice, const Particle& particle, std::span<const int64_t> fields) {
+uint64_t hash_of(const Lattice& lattice, const Particle& particle, std::span<const int64_t> fields,
+                 std::span<const int64_t> bonds) {
   Hash hash;
   hash.resume(hash_of(lattice, particle));
   for (const int64_t number : fields) hash.add(number);
+  for (const int64_t number : bonds) hash.add(number);
   return hash.value();
 }
 
@@ -29,12 +31,10 @@ uint64_t hash_of(const Lattice& lattice, const State& state) {
   const size_t fields = state.fields.size() / std::max<size_t>(1, state.particles.size());
   for (size_t k = 0; k < state.particles.size(); ++k) {
     const uint32_t id = state.particles[k].id;
-    Hash hash;
-    hash.resume(hash_of(lattice, state.particles[k]));
-    for (size_t f = 0; f < fields; ++f) hash.add(state.fields[k * fields + f]);
+    std::span<const int64_t> bonds;
     if (!state.bond_begin.empty())
-      for (uint64_t b = state.bond_begin[id]; b < state.bond_begin[id + 1]; ++b) hash.add(state.bonds[b]);
-    sum += hash.value();
+      bonds = std::span(state.bonds).subspan(state.bond_begin[id], state.bond_begin[id + 1] - state.bond_begin[id]);
+    sum += hash_of(lattice, state.particles[k], std::span(state.fields).subspan(k * fields, fields), bonds);
   }
   return sum;
 }

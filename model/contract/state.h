@@ -40,8 +40,9 @@ struct State {
 // are any, fields and what its bonds keep: independent of order, so that threads, ranks and GPUs can add up
 // their shares.
 uint64_t hash_of(const Lattice& lattice, const Particle& particle);
-// With its numbers of State::fields.
-uint64_t hash_of(const Lattice& lattice, const Particle& particle, std::span<const int64_t> fields);
+// With its numbers of State::fields, and of State::bonds.
+uint64_t hash_of(const Lattice& lattice, const Particle& particle, std::span<const int64_t> fields,
+                 std::span<const int64_t> bonds = {});
 uint64_t hash_of(const Lattice& lattice, const State& state);
 
 // Sum of v over the particles, P+G fractional bits; where masses differ, of v times the mass over the

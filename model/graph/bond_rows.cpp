@@ -17,6 +17,8 @@ uint64_t BondRows::longest() const {
   return most;
 }
 
+uint32_t BondRows::kinds() const { return kind.empty() ? 1 : 1 + *std::ranges::max_element(kind); }
+
 std::vector<uint64_t> begins_of(const BondRows& rows, int numbers) {
   std::vector<uint64_t> begins;
   for (const uint64_t first : rows.first) begins.push_back(first * static_cast<uint64_t>(numbers));

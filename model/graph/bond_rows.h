@@ -17,6 +17,7 @@ struct BondRows {
   // The same bond from its other end.
   uint64_t twin(uint32_t id, uint64_t bond) const;
   uint64_t longest() const;  // row
+  uint32_t kinds() const;    // one at least
 };
 
 // State::bond_begin, of so many numbers of each bond.

@@ -88,6 +88,14 @@ int Round::place(int sum) const {
   return static_cast<int>(first);
 }
 
+std::vector<int64_t> beginning_of(const std::vector<Field>& fields) {
+  std::vector<int64_t> numbers;
+  for (const Field& field : fields)
+    numbers.insert(numbers.end(), static_cast<size_t>(field.numbers),
+                   std::clamp<int64_t>(0, field.range.low, field.range.high));
+  return numbers;
+}
+
 std::vector<int> terms_of(const Round& round) {
   std::vector<int> terms;
   for (const Sum& sum : round.sums) terms.insert(terms.end(), sum.terms.begin(), sum.terms.end());

@@ -97,6 +97,9 @@ struct FixedProgram {
   bool symmetric(int constant) const;  // of a pair constant: types may be swapped
 };
 
+// What the numbers of these fields begin with where nobody says: zero, or the end of the range next to it.
+std::vector<int64_t> beginning_of(const std::vector<Field>& fields);
+
 // The nodes that a round's graphs are run for: the components of all sums, in order; of a pair, these and
 // what it writes of its bond; of the finish, what it writes and, of the last round, the motion.
 std::vector<int> terms_of(const Round& round);

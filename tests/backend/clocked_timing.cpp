@@ -103,6 +103,7 @@ emu::CellSlots slots_of(const FixedRule& rule, const Golden& golden) {
     for (const Particle& p : cell) {
       const Int3 x = visible(rule, p.x);
       for (size_t a = 0; a < 3; ++a) slots.x[a].push_back(static_cast<int32_t>(x[a]));
+      slots.id.push_back(p.id);
     }
   }
   slots.first.push_back(static_cast<uint32_t>(slots.x[0].size()));

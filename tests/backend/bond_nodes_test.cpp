@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: MIT
+// Bonded rules on native nodes beside golden, and their cycles beside the timing model's.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "emu/machine/loop_bench.h"
+#include "emu/systemc/node.h"
+#include "model/program/integer_program.h"
+#include "model/run/integer_run.h"
+#include "tests/backend/clocked_timing.h"
+#include "tests/backend/engines.h"
+#include "tests/support/refused_with.h"
+
+namespace cuboct::test {
+namespace {
+
+constexpr const char* kGlass = R"toml(density = "2440 kg/m^3"
+[rule]
+file = "texts/glass.toml"
+parameters = { youngs_modulus = "72 GPa", poissons_ratio = 0.22, critical_stretch = 0.00091 }
+start.whole = "not ((x_i.y - 1.2 mm) * (x_i.y + d0.y - 1.2 mm) < 0 and x_i.x + d0.x / 2 < 1 mm)"
+[packing]
+pitch = "1 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[3.5, 3, 2] mm"
+[run]
+dt = "0.04 us"
+steps = 1
+)toml";
+
+constexpr const char* kPlastic = R"toml(density = "1.41 g/cm^3"
+[rule]
+file = "texts/plastic.toml"
+[packing]
+pitch = "1 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[3.5, 3, 2] mm"
+[run]
+dt = "0.2 us"
+steps = 1
+)toml";
+
+struct Motion {
+  Vec3 together = Vec3::Zero();  // m/s
+  double random = 0;             // m/s, at most, along each axis
+  double growth = 0;             // of the body in a step, of its size
+  bool flat = false;             // nothing along z
+};
+
+struct Body {
+  Case c;
+  Body(const std::string& text, const Motion& motion, const Arch& arch, uint64_t steps = 8) {
+    c.name = "bonds", c.steps = steps;
+    c.scene = parse_scene(text, CUBOCT_SOURCE_DIR "/scenes/rules/small.toml");
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> any(-motion.random, motion.random);
+    Vec3 middle = Vec3::Zero();
+    for (const Vec3& x : c.scene.body.x) middle += x / static_cast<double>(c.scene.body.size());
+    c.scene.body.v.clear();
+    for (const Vec3& x : c.scene.body.x)
+      c.scene.body.v.push_back(motion.together + motion.growth / c.scene.rule.dt * (x - middle) +
+                               Vec3(any(random), any(random), any(random)));
+    if (motion.flat)
+      for (Vec3& v : c.scene.body.v) v.z() = 0;
+    c.scene.reach_margin = Vec3::Constant(2e-3);
+    const Plan& plan = c.setup.plan = program_plan_of(c.scene, arch, CellForm::cubes);
+    c.setup.initial = program_beginning(
+        c.scene, {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity});
+  }
+};
+
+// What the stimuli contained. All particles have bonds, so those that migrate take them along.
+struct Counts {
+  uint64_t moved = 0, broken = 0, changed = 0;
+  std::vector<Fault> faults;
+};
+
+std::vector<std::vector<uint32_t>> order_of(const Golden& golden) {
+  std::vector<std::vector<uint32_t>> order;
+  for (const auto& cell : golden.cells()) {
+    auto& ids = order.emplace_back();
+    for (const Particle& p : cell) ids.push_back(p.id);
+  }
+  return order;
+}
+
+// Runs the nodes and golden for `steps`, and compares hashes, states, orders and the fault that ends the run.
+void compare(const Body& body, uint64_t steps, double stalls, Counts& counts) {
+  const Plan& plan = body.c.setup.plan;
+  const State& initial = body.c.setup.initial;
+  ASSERT_EQ(machine_refusal(plan), "");
+  emu::RunOptions options;
+  options.steps = steps;
+  for (uint64_t step = 0; step <= steps; ++step) options.frames.push_back(step);
+  options.keep_order = true;
+  options.stall_rate = stalls;
+  const emu::RunResult run = run_loop_bench(plan, initial, options, emu::native_nodes(plan), "plain");
+  const Trace& trace = run.trace;
+  Golden golden = golden_of(body.c.setup);
+  for (uint64_t step = 0;; ++step) {
+    const State now = golden.state();
+    ASSERT_EQ(trace.state_hash.at(step), hash_of(plan.lattice, now)) << step;
+    ASSERT_EQ(trace.frames.at(step), now) << step;
+    ASSERT_EQ(run.order.at(step), order_of(golden)) << step;
+    if (step == steps) break;
+    try {
+      golden.step();
+    } catch (const RunError& e) {
+      ASSERT_TRUE(trace.stop);
+      EXPECT_EQ(trace.stop->text, e.what());
+      ASSERT_EQ(trace.state_hash.size(), step + 1);
+      counts.faults.push_back(e.fault);
+      return;
+    }
+    const State after = golden.state();
+    for (size_t k = 0; k < now.particles.size(); ++k)
+      counts.moved += now.particles[k].cell != after.particles[k].cell;
+    for (size_t b = 0; b < now.bonds.size(); ++b) {
+      counts.changed += now.bonds[b] != after.bonds[b];
+      counts.broken += now.bonds[b] == 1 && after.bonds[b] == 0;
+    }
+  }
+  ASSERT_FALSE(trace.stop);
+}
+
+std::vector<Arch> machines() {
+  std::vector<Arch> all(5);
+  all[1].filter_lanes = 2, all[1].force_pipes = 2, all[1].queue_depth = 1;
+  all[2].overlap = false, all[2].link_bits = 7;
+  all[3].link_bits = 33, all[3].link_check = LinkCheck::retry, all[3].filter_lanes = 3;
+  all[4].force_pipes = 4, all[4].queue_depth = 2, all[4].link_check = LinkCheck::detect;
+  return all;
+}
+
+// Some 0.1 cells of glass a step: all cross faces, and those near edges go on along a second axis.
+const Vec3 kDrift(5000, -2500, 1700);
+
+TEST(BondNodes, OfGlassThatBreaksHaveGoldensBitsAndTheModelsCycles) {
+  Counts counts;
+  Seen seen;
+  for (const Arch& arch : machines()) {
+    const Body body(kGlass, {kDrift, 8}, arch);
+    compare(body, body.c.steps, 0, counts);
+    if (HasFatalFailure()) return;
+    EXPECT_EQ(difference(body.c, seen), "");
+  }
+  EXPECT_GT(counts.moved, 100u);
+  EXPECT_GT(counts.broken, 100u);
+  EXPECT_GT(seen.leave_twice, 0u);
+  EXPECT_GT(seen.multi_pass, 50u);
+  EXPECT_GT(seen.stalls, 10u);
+  EXPECT_GT(seen.events["pairs_issued"], 10000u);
+  EXPECT_GT(seen.spans, 50000u);
+}
+
+TEST(BondNodes, OfASolidThatYieldsHaveGoldensBitsAndTheModelsCycles) {
+  Counts counts;
+  Seen seen;
+  for (const Arch& arch : machines()) {
+    const Body body(kPlastic, {kDrift / 5, 20}, arch);
+    compare(body, body.c.steps, 0, counts);
+    if (HasFatalFailure()) return;
+    EXPECT_EQ(difference(body.c, seen), "");
+  }
+  EXPECT_GT(counts.moved, 100u);
+  EXPECT_GT(counts.changed, 1000u);
+  EXPECT_GT(seen.spans, 50000u);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
+const std::string kSize = "[geometry]\nshape = \"box\"\nmin = \"[0, 0, 0] mm\"\nmax = \"[3.5, 3, 2] mm\"\n";
+
+// Bonds across the seams of a ring of three cells, and of a layer without a third axis.
+TEST(BondNodes, OfBoxesAndOfLayersHaveGoldensBitsAndTheModelsCycles) {
+  Counts ring, layer;
+  Seen seen;
+  for (const Arch& arch : machines()) {
+    const Body box(replaced(kPlastic, kSize, "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n"), {kDrift / 5, 20},
+                   arch, 4);
+    const Body sheet(replaced(replaced(kGlass, kSize,
+                                       "[geometry]\nshape = \"box\"\nmin = \"[0, 0, -0.5] mm\"\n"
+                                       "max = \"[5, 4, 0.5] mm\"\n"),
+                              "pitch = \"1 mm\"\n", "pitch = \"1 mm\"\naxes = [[1, -1, 0], [1, 1, -2]]\n"),
+                     {kDrift, 20, 0, true}, arch);
+    ASSERT_EQ(box.c.setup.plan.lattice.period(), (Cell{4, 3, 3}));
+    ASSERT_EQ(sheet.c.setup.plan.rule.axes, 2);
+    compare(box, box.c.steps, 0, ring);
+    compare(sheet, sheet.c.steps, 0, layer);
+    if (HasFatalFailure()) return;
+    EXPECT_EQ(difference(box.c, seen), "");
+    EXPECT_EQ(difference(sheet.c, seen), "");
+  }
+  EXPECT_GT(ring.moved, 50u);
+  EXPECT_GT(layer.moved, 50u);
+  EXPECT_GT(layer.broken, 20u);
+}
+
+TEST(BondNodes, HaveGoldensBitsWhereLinksStall) {
+  Counts counts;
+  for (const Arch& arch : machines()) {
+    compare(Body(kGlass, {kDrift, 8}, arch), 6, 0.3, counts);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(counts.moved, 50u);
+  EXPECT_GT(counts.broken, 30u);
+}
+
+// Who is where decides who is met, and not how far: while nobody migrates the filter need not look again.
+TEST(BondNodes, AreNotFilteredAgainWhileNobodyMigrates) {
+  Seen seen;
+  EXPECT_EQ(difference(Body(kGlass, {Vec3::Zero(), 2}, Arch(), 10).c, seen), "");
+  EXPECT_EQ(seen.leave, 0u);
+  EXPECT_GT(seen.busy, 0u);
+  EXPECT_EQ(seen.filtered * 10, seen.busy * 2);  // once by each of two models
+}
+
+// Many lose bonds in one step, each several; of them the least is told.
+TEST(BondNodes, ThatAreLostAreTheFaultOfGolden) {
+  Counts counts;
+  for (const Arch& arch : machines())
+    for (const double stalls : {0.0, 0.2}) {
+      compare(Body(kGlass, {Vec3::Zero(), 10, 0.9}, arch), 4, stalls, counts);
+      if (HasFatalFailure()) return;
+    }
+  EXPECT_EQ(counts.faults, std::vector<Fault>(2 * machines().size(), Fault::bond_lost));
+}
+
+// Four particles, at the corners of a tetrahedron, with a bond between each two.
+std::string of_four(const std::string& text) { return replaced(text, "[3.5, 3, 2] mm", "[1.1, 1.1, 1.1] mm"); }
+
+TEST(BondNodes, ThatAreBrokenMayBeAnywhereAndOthersMayNot) {
+  Counts counts;
+  for (const Arch& arch : machines()) {
+    const Body glass(of_four(kGlass), {Vec3::Zero(), 0, 0.3}, arch),
+        plastic(of_four(kPlastic), {Vec3::Zero(), 0, 3.6}, arch);
+    ASSERT_EQ(glass.c.setup.initial.particles.size(), 4u);
+    compare(glass, 14, 0, counts);
+    compare(plastic, 4, 0, counts);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_EQ(counts.broken, 12 * machines().size());
+  EXPECT_EQ(counts.faults, std::vector<Fault>(machines().size(), Fault::bond_lost));
+}
+
+TEST(BondNodes, WiderThanAWordAreRefused) {
+  const Body body(kGlass, {}, Arch());
+  EXPECT_EQ(refused_with<InputError>([&] { emu::check_words(body.c.setup.plan, 400); }),
+            "a record of " + std::to_string(body.c.setup.plan.words.particle_bits) + " bits, " +
+                std::to_string(body.c.setup.plan.words.bonds) +
+                " bonds among them: the cycle-accurate engines hold at most 400");
+  Arch wide;
+  wide.link_bits = 513;
+  const Body beats(kPlastic, {}, wide);
+  EXPECT_GT(beats.c.setup.plan.words.particle_bits, 513);
+  EXPECT_EQ(refused_with<InputError>([&] { emu::check_words(beats.c.setup.plan); }),
+            "a beat of 513 bits: the cycle-accurate engines hold at most 512\n  hint: use fewer link.bits");
+}
+
+}  // namespace
+}  // namespace cuboct::test
