@@ -416,8 +416,8 @@ Outputs finish_pipeline(const graph::FixedProgram& program, const graph::Round& 
 }
 
 std::vector<Module> print_pipeline(const std::string& name, const graph::Graph& graph, const Outputs& outputs,
-                                   const Schedule& schedule) {
-  const std::string wrong = refusal_of(graph, outputs.nodes, schedule);
+                                   const Schedule& schedule, const Delays& delays) {
+  const std::string wrong = refusal_of(graph, outputs.nodes, schedule, delays);
   if (!wrong.empty()) throw std::logic_error("no pipeline of this schedule: " + wrong);
   const std::set<std::string> names(outputs.names.begin(), outputs.names.end());
   if (names.size() != outputs.nodes.size())

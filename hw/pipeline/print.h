@@ -23,9 +23,9 @@ struct Module {
   std::string name, text;  // of a file, without its .sv
 };
 // The module and its memories. They need cuboct_mult and cuboct_leading_zeros of the library.
-// std::logic_error where the schedule is none, or two outputs have one name.
+// std::logic_error where the check refuses the schedule, or two outputs have one name.
 std::vector<Module> print_pipeline(const std::string& name, const graph::Graph& graph, const Outputs& outputs,
-                                   const Schedule& schedule);
+                                   const Schedule& schedule, const Delays& delays = kDelays);
 
 // Of any schedule: a step that comes too soon gets what stands there then. So a test sees what the check is
 // for.

@@ -60,6 +60,10 @@ void add_program(std::vector<Pipeline>& all, const std::string& name, const grap
 TEST(PrintedPipeline, IsTheInterpreter) {
   std::vector<Pipeline> all;
   add_random(all, 1, 3, 24);
+  graph::Builder wires;  // no cycle at all
+  wires.floor(wires.input(graph::Source::own_field, 0, 0, {-100, 90}), 3);
+  all.push_back(all_of("wires", wires.take(), -1));
+  EXPECT_EQ(all.back().schedule.cycles, 0);
   add_program(all, "heat", shipped_rule("heat").program.program);
   add_program(all, "pair_law", pair_program(random_rule(4), 6));
   const Compared compared = expect_equal(all, 400);

@@ -77,6 +77,60 @@ TEST(PipelineSteps, AreWorthWhatTheInterpreterSays) {
   EXPECT_GT(hidden, 1000u);
 }
 
+// Each output of the steps in all lanes, where the pair counts.
+uint64_t expect_equal_steps(const Graph& graph, const std::vector<int>& outputs, int when, uint64_t seed,
+                            const std::string& name) {
+  const pipeline::Steps steps = pipeline::steps_of(graph, outputs);
+  graph::Block<int64_t> block(graph, kLanes);
+  run_all(block, graph, seed, kLanes);
+  uint64_t compared = 0;
+  for (size_t lane = 0; lane < kLanes; ++lane) {
+    if (when >= 0 && block.values(when)[lane] == 0) continue;
+    std::vector<int64_t> inputs;
+    for (const pipeline::Port& port : steps.inputs) inputs.push_back(block.values(port.node)[lane]);
+    const std::vector<Wide> values = values_of(steps, graph.tables, inputs);
+    for (const pipeline::Port& port : steps.outputs) {
+      EXPECT_EQ(static_cast<int64_t>(values[static_cast<size_t>(port.step)]), block.values(port.node)[lane])
+          << name << ", lane " << lane << ", " << label(graph, port.node);
+      ++compared;
+    }
+  }
+  return compared;
+}
+
+// Factors of every width that a product has room for, with and without a sign, and squares.
+TEST(PipelineSteps, MultiplyAllWidths) {
+  for (int wide = 1; wide <= 60; ++wide)
+    for (int narrow = 1; narrow <= std::min(wide, 61 - wide); narrow += narrow < 20 ? 1 : 5) {
+      graph::Builder b;
+      const auto input = [&](int index, int bits, bool is_signed) {
+        const int64_t most = (int64_t{1} << bits) - 1;
+        return b.input(graph::Source::own_field, index, 0, {is_signed ? -most - 1 : 0, most});
+      };
+      const int a = input(0, wide, true), c = input(1, wide, false), x = input(2, narrow, true),
+                y = input(3, narrow, false);
+      std::vector<int> products = {
+          b.mul(a, x), b.mul(a, y), b.mul(c, x), b.mul(c, y), b.mul(x, x, narrow / 2), b.mul(y, y)};
+      for (int s = 1; s < wide + narrow; s += 7) products.push_back(b.mul(a, x, s));
+      const Graph graph = b.take();
+      expect_equal_steps(graph, products, -1, static_cast<uint64_t>(wide * 64 + narrow),
+                         "factors of " + std::to_string(wide) + " and " + std::to_string(narrow) + " bits");
+    }
+}
+
+TEST(PipelineSteps, OfShippedRulesAreWorthWhatTheInterpreterSays) {
+  for (const char* name : kShippedRules) {
+    const InIntegers made = shipped_rule(name);
+    for (const graph::Round& round : made.program.program.rounds) {
+      EXPECT_GT(expect_equal_steps(round.pair, pipeline::piped_outputs(round), round.when, 3, name), 0u)
+          << name;
+      EXPECT_GE(
+          expect_equal_steps(round.finish, graph::finish_outputs(made.program.program, round), -1, 4, name),
+          kLanes);
+    }
+  }
+}
+
 void expect_accepted(const Graph& graph, const std::vector<int>& outputs, const std::string& name) {
   const Schedule schedule = pipeline::schedule_of(graph, outputs);
   EXPECT_EQ(pipeline::refusal_of(graph, outputs, schedule), "") << name;

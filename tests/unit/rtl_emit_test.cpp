@@ -53,8 +53,8 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
       size_t copies = 0;
       for (const auto& entry : fs::recursive_directory_iterator(root)) {
         const fs::path name = entry.path().filename();
-        for (const fs::path& folder : {library / "lib", library / "lattice", library / "pipeline", library / "board",
-                                       library / "bus", library / "board" / board.name})
+        for (const fs::path& folder : {library / "lib", library / "lattice", library / "pipeline",
+                                       library / "board", library / "bus", library / "board" / board.name})
           if (!name.empty() && fs::is_regular_file(folder / name)) {
             EXPECT_EQ(read_text(entry.path()), read_text(folder / name)) << name;
             ++copies;
