@@ -63,8 +63,8 @@ TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
-    for (const Particle& p : nodes[n])
-      host.load(index++, n, emu::load_word(setup.plan, p), setup.plan.words.particle_bits);
+    for (const emu::Loaded& p : nodes[n])
+      host.load(index++, n, p.word, setup.plan.words.particle_bits);
   host.run(0, 24);
   while (host.status().busy) continue;
   EXPECT_EQ(host.status().cycles, cycles_of(setup, 24));
@@ -175,8 +175,8 @@ TEST(Board, RequestsMayBeRepeated) {
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
-    for (const Particle& p : nodes[n]) {
-      for (int k = 0; k < 2; ++k) host.load(index, n, emu::load_word(setup.plan, p), bits);
+    for (const emu::Loaded& p : nodes[n]) {
+      for (int k = 0; k < 2; ++k) host.load(index, n, p.word, bits);
       ++index;
     }
   for (int k = 0; k < 2; ++k) host.run(0, 7);
@@ -185,7 +185,7 @@ TEST(Board, RequestsMayBeRepeated) {
   EXPECT_EQ(cycles, cycles_of(setup, 7));
   uint64_t hash = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
-    for (const emu::Bits& word : host.read(n, bits)) {
+    for (const emu::Word& word : host.read(n, bits)) {
       const emu::Slot slot = emu::unpack_particle(setup.plan, word);
       const Int3 x = emu::position_of(setup.plan.rule.widths, slot);
       const Particle p{slot.body.id, slot.body.type, n, x, slot.body.v, slot.u};
