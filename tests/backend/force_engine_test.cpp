@@ -167,7 +167,7 @@ TEST(NativeForceEngine, TakesTheCyclesOfItsRegisters) {
     plan.arch.force_pipes = static_cast<int>(draw(1, std::min(3, plan.arch.filter_lanes)));
     plan.arch.queue_depth = static_cast<int>(draw(0, 1) ? draw(1, 3) : draw(1, 20));
     plan.latency.interval = static_cast<int>(draw(0, 1) ? 1 : draw(2, 4));
-    plan.latency.pipe = static_cast<int>(draw(plan.latency.interval, 14));
+    plan.latency.pipe = plan.rounds[0].pipe = static_cast<int>(draw(plan.latency.interval, 14));
     plan.arch.narrow_memories = draw(0, 3) == 0;
     if (plan.arch.narrow_memories) plan.arch.filter_lanes = plan.arch.force_pipes = 1;
     plan.words.halo_beats = static_cast<int>(draw(1, 9));

@@ -185,7 +185,7 @@ TEST(Mutation, ACutLinkIsADeadlockThatNamesTheNodes) {
 TEST(Mutation, ALatePhaseIsSeen) {
   const Case c = make_case("undamped_2x2x2");
   Plan other = c.setup.plan;
-  other.latency.pipe += 1;
+  other.rounds[0].pipe += 1;
   const auto run = [&](const Plan& plan, const char* name) {
     return run_loop_bench(plan, c.setup.initial, keep_all(c.steps), emu::native_nodes(plan), name);
   };
