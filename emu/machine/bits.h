@@ -45,7 +45,8 @@ struct BitsOf {
   int64_t get_signed(int lsb, int width) const { return get_signed_bits(word, lsb, width); }
   // The words that hold the first `width` bits become zeros.
   void clear(int width) {
-    std::fill_n(word.begin(), std::min<size_t>(word.size(), static_cast<size_t>(width + 63) / 64), uint64_t{0});
+    std::fill_n(word.begin(), std::min<size_t>(word.size(), static_cast<size_t>(width + 63) / 64),
+                uint64_t{0});
   }
   // Bits [lsb, lsb + width) moved down to 0; bits beyond kWidth read as zeros.
   BitsOf slice(int lsb, int width) const {
@@ -63,7 +64,8 @@ struct BitsOf {
       out.word[static_cast<size_t>(done >> 6)] = get(lsb + done, held);
     }
   }
-  // Adds the low `width` bits of `part` at `lsb`, where this holds zeros; what falls beyond kWidth is dropped.
+  // Adds the low `width` bits of `part` at `lsb`, where this holds zeros; what falls beyond kWidth is
+  // dropped.
   template <int kOther>
   void join(int lsb, int width, const BitsOf<kOther>& part) {
     width = std::min(width, BitsOf<kOther>::kWidth);

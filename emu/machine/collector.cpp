@@ -45,9 +45,9 @@ void fill_row(const Plan& plan, const State& state, Slot& slot) {
   for (uint64_t b = rows.first[id]; b < rows.first[id + 1]; ++b) {
     const size_t place = b - rows.first[id];
     slot.bonds[place] = {rows.other[b], rows.kind[b]};
-    std::copy_n(state.bonds.empty() ? beginning.begin()
-                                    : state.bonds.begin() + static_cast<ptrdiff_t>(b * numbers),
-                numbers, slot.bond_numbers.begin() + static_cast<ptrdiff_t>(place * numbers));
+    std::copy_n(
+        state.bonds.empty() ? beginning.begin() : state.bonds.begin() + static_cast<ptrdiff_t>(b * numbers),
+        numbers, slot.bond_numbers.begin() + static_cast<ptrdiff_t>(place * numbers));
   }
 }
 
@@ -156,8 +156,8 @@ void Collector::check_bonds(uint32_t node, const Slot& slot) const {
     const bool same = k < bonds ? bond.other == rows.other[first + k] && bond.kind == rows.kind[first + k]
                                 : bond.other == id;
     if (!same)
-      throw std::runtime_error(fmt::format("step {}: particle {} holds a bond to {} in place {}", step_[node],
-                                           id, bond.other, k));
+      throw std::runtime_error(
+          fmt::format("step {}: particle {} holds a bond to {} in place {}", step_[node], id, bond.other, k));
   }
 }
 

@@ -38,7 +38,8 @@ void check_words(const Plan& plan, int most) {
                 "rule.file", "rule"});
   };
   if (words.migrate_bits > most)
-    refuse(words.migrate_bits, words.bonds > 0 ? fmt::format(", {} bonds among them", words.bonds) : "", most);
+    refuse(words.migrate_bits, words.bonds > 0 ? fmt::format(", {} bonds among them", words.bonds) : "",
+           most);
   if (halo > Bits::kWidth) refuse(halo, "", Bits::kWidth);
   const auto refuse_beat = [](const char* beat, int bits) {
     throw InputError(fmt::format("{} of {} bits: the cycle-accurate engines hold at most {}", beat, bits,

@@ -16,7 +16,7 @@ namespace cuboct::emu {
 struct Candidate {
   std::array<int32_t, 3> x{};  // P fractional bits, P+2 bits signed; P <= 30. z stays 0 in a flat plan
   uint8_t type = 0;
-  Int3 v{};  // P+G fractional bits; zero unless the rule reads it
+  Int3 v{};                     // P+G fractional bits; zero unless the rule reads it
   uint32_t id = 0;              // where the rule reads it; of an own particle always
   std::vector<int64_t> fields;  // of a rule of text: its numbers, those of others as far as they were sent
 };
@@ -29,10 +29,10 @@ struct Bond {
 
 // A particle in a slot.
 struct Slot {
-  Candidate body;                    // x: visible
-  std::vector<Bond> bonds;           // of a bonded rule: Words::bonds places
+  Candidate body;                     // x: visible
+  std::vector<Bond> bonds;            // of a bonded rule: Words::bonds places
   std::vector<int64_t> bond_numbers;  // of each place FixedProgram::bond_numbers()
-  std::array<int32_t, 3> residue{};  // the G bits of the position below those
+  std::array<int32_t, 3> residue{};   // the G bits of the position below those
   Int3 u{};
   std::array<int8_t, 3> away{};  // per axis: nodes still to go, -1, 0, +1
 };

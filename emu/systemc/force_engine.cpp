@@ -26,7 +26,11 @@ struct ForceEngine::Stream : ForceStream {
 ForceEngine::ForceEngine(const Plan& plan, std::vector<Slot>& own,
                          const std::array<std::vector<Candidate>, kFaces>& halo, const HaloTimes& times,
                          FaultKeeper& fault)
-    : ForceMachine(plan, 1, fault), own_(own), halo_(halo), times_(times), bonded_(plan.program && plan.program->program.bonded) {
+    : ForceMachine(plan, 1, fault),
+      own_(own),
+      halo_(halo),
+      times_(times),
+      bonded_(plan.program && plan.program->program.bonded) {
   if (plan.program) rounds_ = std::make_unique<RoundWork>(plan, own, fault);
 }
 
@@ -152,8 +156,8 @@ uint64_t ForceEngine::arrive() {
     last = std::max(last, clock_stream(
                               plan_, stream, static_cast<int>(segments), begin,
                               [](int, uint32_t entry) { return there[entry]; },
-                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, 1, pipe(), counts_,
-                              [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); }));
+                              [&](int segment) { return complete[static_cast<size_t>(segment)]; }, 1, pipe(),
+                              counts_, [&](uint32_t entry, uint64_t& mask) { issue(stream, entry, mask); }));
   }
   last = std::max(last, available_[static_cast<size_t>(plan_.rule.axes)]);
   counts_.busy += last - begin + 1;

@@ -68,8 +68,7 @@ void Node::pack_relayed(int segment, int record, std::span<uint64_t> out) const 
   if (round_ == 0) return pack_halo(plan_, relayed(segment, record), 0, out);
   const auto round = static_cast<size_t>(round_), at = static_cast<size_t>(record);
   pack_later(plan_.rounds[round].record,
-             segment == 0 ? own_[at].body.fields
-                          : later_[round % 2][static_cast<size_t>(segment - 1)][at],
+             segment == 0 ? own_[at].body.fields : later_[round % 2][static_cast<size_t>(segment - 1)][at],
              out);
 }
 

@@ -16,9 +16,7 @@ Seen seen(const Candidate& body, Particle& particle) {
   particle.id = body.id;
   particle.type = body.type;
   particle.v = body.v;
-  return {&particle,
-          {body.x[0], body.x[1], body.x[2]},
-          body.fields.empty() ? nullptr : body.fields.data()};
+  return {&particle, {body.x[0], body.x[1], body.x[2]}, body.fields.empty() ? nullptr : body.fields.data()};
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rounds of a rule of text in a node of one cell, by golden's own functions: what pairs add to the sums of
-// the own slots, and what finishes make of these.
+// The rounds of a rule of text in a node of one cell, by golden's own functions: what pairs add to the sums
+// of the own slots, and what finishes make of these.
 #pragma once
 
 #include <memory>

@@ -42,8 +42,8 @@ struct Places {
   const std::array<uint32_t, 6>* neighbour;  // nodes + 1
   // Of a bonded rule, in place of x; else null.
   const graph::BondRows* rows = nullptr;
-  const uint32_t* id = nullptr;      // of each particle
-  const NodeSlot* where = nullptr;   // by id
+  const uint32_t* id = nullptr;     // of each particle
+  const NodeSlot* where = nullptr;  // by id
 };
 
 struct HitScratch {

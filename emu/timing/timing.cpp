@@ -76,7 +76,7 @@ struct TimingModel::Impl {
   std::vector<uint32_t> id_;                       // of a bonded rule
   std::vector<NodeSlot> where_;                    // of a bonded rule, by id
   std::vector<uint32_t> count_, final_count_;      // particles at its start, at its end
-  std::vector<uint8_t> changed_;           // other particles than in the step before, or another order
+  std::vector<uint8_t> changed_;  // other particles than in the step before, or another order
   // ... or another position, where hits depend on it; there, or in a neighbour along x too.
   std::vector<uint8_t> moved_, moved_x_;
   std::vector<uint32_t> sent_y_, sent_z_;  // records that it sends along y, z
@@ -86,7 +86,7 @@ struct TimingModel::Impl {
   Cycles begin_;             // its first cycle
   std::vector<Cycles> end_;  // the phases' last cycles
   std::array<Cycles, 3> halo_end_, migrate_end_,
-      migrate_start_;  // [axis] cycle that loads the end beat; first cycle
+      migrate_start_;                          // [axis] cycle that loads the end beat; first cycle
   std::vector<std::vector<NodeForce>> force_;  // by round, then node
   std::vector<MachineEvents> events_;
   std::vector<Scratch> scratch_;  // by thread
@@ -255,8 +255,8 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
                       rows_,
                       id_.data(),
                       where_.data()};
-  return begin + force_[at(round_)][n].time(filter_, places, n, shape_[at(round_)], available, still(n), scratch.hits,
-                                scratch.counters, events_[n]);
+  return begin + force_[at(round_)][n].time(filter_, places, n, shape_[at(round_)], available, still(n),
+                                            scratch.hits, scratch.counters, events_[n]);
 }
 
 // Where an axis does not exist its phases end with those before them.

@@ -126,7 +126,7 @@ WordLayout halo_layout(const FixedRule& r, bool bricks, int cell_bits, int id_bi
 }  // namespace
 
 std::string name_of(const WordField& field) {
-  constexpr std::array kNames{"x", "away", "v",     "type", "id",     "residue",
+  constexpr std::array kNames{"x", "away",  "v",     "type", "id",     "residue",
                               "u", "field", "other", "kind", "number", "cell"};
   std::string name = kNames[static_cast<size_t>(field.kind)];
   if (field.place >= 0) name = fmt::format("bond_{}_{}", field.place, name);

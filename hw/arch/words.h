@@ -15,7 +15,7 @@ namespace cuboct {
 namespace graph {
 struct FixedProgram;
 struct BondRows;
-}
+}  // namespace graph
 
 enum class FieldKind : uint8_t {
   position,  // the P visible bits, which forces and links see
@@ -30,7 +30,7 @@ enum class FieldKind : uint8_t {
   bond_other,  // the partner's id; where there is no bond, the particle's own
   bond_kind,   // whose constants it has, as BondRows counts them
   bond_field,  // a number that rounds write of it
-  cell           // with bricks: as hw/arch/bricks.h numbers it
+  cell         // with bricks: as hw/arch/bricks.h numbers it
 };
 
 struct WordField {
@@ -68,7 +68,7 @@ struct Words {
   int migrate_bits = 0;                           // a particle, and with bricks the cell that it goes to
   int halo_cell_bits = 0, migrate_cell_bits = 0;  // 0 without bricks
   int bonds = 0;                                  // places of a particle's row
-  int link_bits = 0;                              // as built: arch.link_bits, or the widest of all rounds' records
+  int link_bits = 0;  // as built: arch.link_bits, or the widest of all rounds' records
 };
 
 // `program`: of a rule of text; null: the pair law. `rows`: of a bonded one; each particle has as many places

@@ -33,7 +33,8 @@ uint64_t hash_of(const Lattice& lattice, const State& state) {
     const uint32_t id = state.particles[k].id;
     std::span<const int64_t> bonds;
     if (!state.bond_begin.empty())
-      bonds = std::span(state.bonds).subspan(state.bond_begin[id], state.bond_begin[id + 1] - state.bond_begin[id]);
+      bonds = std::span(state.bonds)
+                  .subspan(state.bond_begin[id], state.bond_begin[id + 1] - state.bond_begin[id]);
     sum += hash_of(lattice, state.particles[k], std::span(state.fields).subspan(k * fields, fields), bonds);
   }
   return sum;

@@ -14,9 +14,10 @@ namespace {
   const size_t rounds = rule.declaration().rounds.size();
   throw InputError(fmt::format("the rule '{}' has {} round{} of its own, and {} knows the pair law alone",
                                rule.declaration().name, rounds, rounds == 1 ? "" : "s", who),
-                   rule.text() != nullptr ? "engines reference, golden, lattice and gpu run it; a force of r "
-                                            "along d, with 'core', is a pair law"
-                                          : "the reference engine runs it")
+                   rule.text() != nullptr
+                       ? "engines reference, golden, lattice, gpu, systemc and rtl run it; a force of r "
+                         "along d, with 'core', is a pair law"
+                       : "the reference engine runs it")
       .about({"rule.kind", "rule.file", "rule"});
 }
 

@@ -70,8 +70,8 @@ struct Body {
       for (Vec3& v : c.scene.body.v) v.z() = 0;
     c.scene.reach_margin = Vec3::Constant(2e-3);
     const Plan& plan = c.setup.plan = program_plan_of(c.scene, arch, CellForm::cubes);
-    c.setup.initial = program_beginning(
-        c.scene, {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity});
+    c.setup.initial =
+        program_beginning(c.scene, {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity});
   }
 };
 
@@ -184,8 +184,8 @@ TEST(BondNodes, OfBoxesAndOfLayersHaveGoldensBitsAndTheModelsCycles) {
   Counts ring, layer;
   Seen seen;
   for (const Arch& arch : machines()) {
-    const Body box(replaced(kPlastic, kSize, "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n"), {kDrift / 5, 20},
-                   arch, 4);
+    const Body box(replaced(kPlastic, kSize, "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n"),
+                   {kDrift / 5, 20}, arch, 4);
     const Body sheet(replaced(replaced(kGlass, kSize,
                                        "[geometry]\nshape = \"box\"\nmin = \"[0, 0, -0.5] mm\"\n"
                                        "max = \"[5, 4, 0.5] mm\"\n"),
@@ -235,7 +235,9 @@ TEST(BondNodes, ThatAreLostAreTheFaultOfGolden) {
 }
 
 // Four particles, at the corners of a tetrahedron, with a bond between each two.
-std::string of_four(const std::string& text) { return replaced(text, "[3.5, 3, 2] mm", "[1.1, 1.1, 1.1] mm"); }
+std::string of_four(const std::string& text) {
+  return replaced(text, "[3.5, 3, 2] mm", "[1.1, 1.1, 1.1] mm");
+}
 
 TEST(BondNodes, ThatAreBrokenMayBeAnywhereAndOthersMayNot) {
   Counts counts;

@@ -18,7 +18,8 @@ namespace cuboct::test {
 // A hot packing in a periodic box: in each step some particles leave their cell.
 inline std::string hot(const std::string& rule, const std::string& more = "") {
   return "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nrun = { dt = \"0.2 us\", steps = 9 }\n"
-         "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n[[velocity]]\nthermal_speed = \"300 m/s\"\nseed = 3\n" +
+         "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n[[velocity]]\nthermal_speed = \"300 m/s\"\nseed = "
+         "3\n" +
          more + "[rule]\n" + rule;
 }
 
@@ -88,9 +89,9 @@ inline Arch drawn(uint64_t seed) {
   return arch;
 }
 
-// `grows`: in step 5 a field leaves its range in the first round's finish, of those to the right. `pushes`: in the
-// same step the last round's push is too strong, of all. What is found in an earlier round counts, though a
-// lesser id is found later.
+// `grows`: in step 5 a field leaves its range in the first round's finish, of those to the right. `pushes`:
+// in the same step the last round's push is too strong, of all. What is found in an earlier round counts,
+// though a lesser id is found later.
 inline std::string failing(bool grows, bool pushes) {
   return fmt::format(R"toml(reach = "1.3 * pitch"
 [rule.particle.a]

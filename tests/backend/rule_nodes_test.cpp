@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-
 #include "emu/systemc/node.h"
 #include "model/program/integer_program.h"
 #include "tests/backend/clocked_timing.h"
@@ -27,8 +26,9 @@ TEST_P(RuleNodes, HoldGoldensBitsAndTheModelsCycles) {
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     const Case c = case_of(fmt::format("{} {}", GetParam(), seed), text(), drawn(seed), 7);
     ASSERT_EQ(difference(c, seen), "") << c.name;
-    const auto run = run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps, seed % 2 == 0 ? 0.3 : 0, seed),
-                                    emu::native_nodes(c.setup.plan), "plain");
+    const auto run =
+        run_loop_bench(c.setup.plan, c.setup.initial, keep_all(c.steps, seed % 2 == 0 ? 0.3 : 0, seed),
+                       emu::native_nodes(c.setup.plan), "plain");
     const Compared compared = compare(c.setup.plan, run_golden(c.setup, c.steps), run);
     EXPECT_EQ(compared.difference, "") << c.name;
     slots += compared.slots;

@@ -48,14 +48,16 @@ TEST_P(RuleRtl, HoldsGoldensBitsAndTheNativeNodesCycles) {
     EXPECT_GT(compared.slots, 300u);
     const Compared cycles = compare_cycles(native, rtl);
     EXPECT_EQ(cycles.difference, "") << rate;
-    EXPECT_GT(cycles.spans, plan.nodes() * static_cast<uint64_t>(phases_of(static_cast<int>(plan.rounds.size()))));
+    EXPECT_GT(cycles.spans,
+              plan.nodes() * static_cast<uint64_t>(phases_of(static_cast<int>(plan.rounds.size()))));
   }
 }
 
 const auto kName = [](const testing::TestParamInfo<RuleCase>& p) { return std::string(p.param.name); };
 // Of three rounds, of little arithmetic.
 INSTANTIATE_TEST_SUITE_P(Rules, RuleRtl,
-                         testing::Values(RuleCase{"three_rounds", failing(false, false), 2, false, 3, 2, 4, true, 40}),
+                         testing::Values(RuleCase{"three_rounds", failing(false, false), 2, false, 3, 2, 4,
+                                                  true, 40}),
                          kName);
 INSTANTIATE_TEST_SUITE_P(
     More, RuleRtl,
