@@ -237,7 +237,8 @@ class Compiler {
     const auto of = scope_.inside_.find(e.text);
     if (of == scope_.inside_.end())
       fail(e, fmt::format("'{}' is not known here", e.text),
-           "inside(region) is of a particle's start, inside_i and inside_j are of a bond's; a field keeps them");
+           "inside(region) is of a particle's start, inside_i and inside_j are of a bond's; a field keeps "
+           "them");
     if (e.of.size() != 1 || e.of[0].kind != Expression::Kind::name)
       fail(e, fmt::format("'{}' takes the name of a region", e.text), e.text + "(top)");
     const std::vector<std::string>& known = *scope_.regions_;
@@ -245,7 +246,7 @@ class Compiler {
     if (at == known.end()) {
       const std::string near = did_you_mean(e.of[0].text, known);
       fail(e.of[0], fmt::format("unknown region '{}'", e.of[0].text),
-           !near.empty()    ? near
+           !near.empty()   ? near
            : known.empty() ? "[regions] of the scene names shapes"
                            : "known: " + list_of(known));
     }

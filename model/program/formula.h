@@ -67,7 +67,8 @@ class Scope {
     functions_[name] = std::move(function);
   }
   // A function of a region's name: a truth. `regions` must outlive the scope.
-  void define_inside(const std::string& function, RealSource source, const std::vector<std::string>& regions) {
+  void define_inside(const std::string& function, RealSource source,
+                     const std::vector<std::string>& regions) {
     inside_[function] = source;
     regions_ = &regions;
   }

@@ -520,7 +520,8 @@ class Understanding {
     program_.shows_damage =
         program_.broken_at && text_.range == BondRange::reference &&
         std::ranges::none_of(text_.particle, [](auto& field) { return field.name == "damage"; });
-    if (program_.shows_damage) rule.shown.push_back({"damage", 1, "1", "of its bonds the share that is broken"});
+    if (program_.shows_damage)
+      rule.shown.push_back({"damage", 1, "1", "of its bonds the share that is broken"});
     if (!text_.still) rule.particle.push_back({kForceField, 3, "N", "moves the particle"});
     for (size_t k = 0; k < text_.bond.size(); ++k) {
       const RuleText::Field& field = text_.bond[k];

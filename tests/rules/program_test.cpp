@@ -149,8 +149,8 @@ TEST(Program, TheStiffnessOfGlassIsThatOfItsFastestWave) {
   for (const double ratio : {-0.4, 0.0, 0.22, 0.3, 0.4, 0.43, 0.46, 0.49}) {
     const double text = stiffness_of(
         fmt::format("[rule]\nfile = \"texts/glass.toml\"\nparameters.poissons_ratio = {}\n", ratio));
-    const double own = stiffness_of(fmt::format(
-        "[rule]\nkind = \"lps\"\nyoungs_modulus = \"70 GPa\"\npoissons_ratio = {}\n", ratio));
+    const double own = stiffness_of(
+        fmt::format("[rule]\nkind = \"lps\"\nyoungs_modulus = \"70 GPa\"\npoissons_ratio = {}\n", ratio));
     EXPECT_GT(text, own) << ratio;
     EXPECT_LT(text, own * (ratio > 0.4 ? 1.18 : 1.02)) << ratio;
   }
@@ -291,8 +291,9 @@ TEST(Program, WhatCannotBeIsRefusedAtItsPlace) {
   of_file("start.T = \"select(inside(1), 1 K, 2 K)\"\n", "'inside' takes the name of a region");
   of_file("start.T = \"select(inside_i(top), 1 K, 2 K)\"\n", "'inside_i' is not known here");
   of_file(kGripped.substr(0, kGripped.find("[regions]")), "bonds of the moment know no slit");
-  const std::string nowhere = "[rule.start]\nT = \"select(inside(far), 1 K, 2 K)\"\n[regions]\nfar = { shape = "
-                              "\"sphere\", centre = \"[9, 9, 9] m\", radius = \"1 mm\" }\n";
+  const std::string nowhere =
+      "[rule.start]\nT = \"select(inside(far), 1 K, 2 K)\"\n[regions]\nfar = { shape = "
+      "\"sphere\", centre = \"[9, 9, 9] m\", radius = \"1 mm\" }\n";
   of_file(nowhere, "s.toml:11:7: no particle lies in this region");
   EXPECT_NE(text_refusal(heat_bar("rule = \"texts/none.toml\"\n")).find("no file 'texts/none.toml'"),
             std::string::npos);
