@@ -60,6 +60,10 @@ class RoundsTerms {
   virtual uint64_t memory_hash() const { return 0; }
 };
 
+// All rounds on all particles, one round after another, from what begin() was given: none begins before all
+// particles have finished the one before it.
+void run_rounds(RoundsTerms& terms, size_t rounds, size_t particles, bool keeps, int threads = 1);
+
 struct RuleProgram;  // model/program/rule_program.h
 
 class RoundsRule {
