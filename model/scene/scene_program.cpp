@@ -413,7 +413,7 @@ RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packi
     return chosen(text, potential, place, std::move(slits), no_law);
   };
   const auto placed = [&](RuleText text, const ConfigTable& table) {
-    std::vector<Slit> slits = read_slits(table);
+    std::vector<Slit> slits = text.core ? std::vector<Slit>() : read_slits(table);
     if (!slits.empty() && text.range == BondRange::current)
       table.at("slit").fail("bonds of the moment know no slit", "bonds = \"reference\"");
     table.done();
