@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/base/parallel.h"
 
 namespace cuboct {
 namespace {
@@ -22,6 +24,21 @@ namespace {
 }
 
 }  // namespace
+
+void run_rounds(RoundsTerms& terms, size_t rounds, size_t particles, bool keeps, int threads) {
+  // Of a part where threads share them: rows differ in their work, parts are dealt out one by one.
+  constexpr size_t kRows = 64;
+  const size_t rows = threads < 2 ? std::max<size_t>(particles, 1) : kRows;
+  const size_t parts = (particles + rows - 1) / rows;
+  for (size_t round = 0; round < rounds; ++round) {
+    for_each_part(parts, threads, [&](size_t part, int) {
+      const size_t begin = part * rows, end = std::min(begin + rows, particles);
+      terms.pair(round, begin, end, keeps);
+      terms.finish(round, begin, end);
+    });
+    terms.end(round, keeps);
+  }
+}
 
 bool has_reference_bonds(const Rule& rule) {
   return rule.rounds != nullptr && rule.rounds->declaration().bonds == BondRange::reference;
