@@ -265,8 +265,7 @@ std::string Datapath::inputs(const graph::Graph& graph, const pipeline::Schedule
     const Form form = form_of_step(schedule, port.step);
     const std::string name = pipeline::port_name(node), value = input(node, round, pair, form.bits, before);
     const std::string reg = "in_" + name.substr(0, name.size() - 2) + "_q";
-    declared +=
-        fmt::format("    logic {}{}{};\n", form.is_signed ? "signed " : "", range_text(form.bits), reg);
+    declared += fmt::format("    logic {}{};\n", range_text(form.bits), reg);
     set += fmt::format("      {} <= {};\n", reg, value);
     connections += fmt::format(",\n      .{}({})", name, reg);
   }
@@ -274,20 +273,20 @@ std::string Datapath::inputs(const graph::Graph& graph, const pipeline::Schedule
   return before + declared + "    always_ff @(posedge clk_i) begin\n" + set + "    end\n";
 }
 
-// What the pipelines' outputs connect to: `name_o` to `name`.
+// What the pipelines' outputs connect to: `name_o` to `name`. None is declared signed, as a signed vector
+// whose bits are all picked is what yosys 0.23 fails at.
 std::string declared_outputs(const pipeline::Schedule& schedule, const pipeline::Outputs& outputs,
                              std::string& connections) {
   std::string text;
   for (size_t k = 0; k < outputs.names.size(); ++k) {
     const pipeline::Step& step = schedule.steps.steps[at(schedule.steps.outputs[k].step)];
-    text += fmt::format("    logic {}{}{};\n", step.is_signed ? "signed " : "", range_text(step.bits),
-                        outputs.names[k]);
+    text += fmt::format("    logic {}{};\n", range_text(step.bits), outputs.names[k]);
     connections += fmt::format(",\n      .{0}_o({0})", outputs.names[k]);
   }
   if (schedule.steps.fault < 0) return text + "    logic made;\n";
   const auto declare = [&](int step, const char* name) {
     const pipeline::Step& s = schedule.steps.steps[at(step)];
-    text += fmt::format("    logic {}{}{};\n", s.is_signed ? "signed " : "", range_text(s.bits), name);
+    text += fmt::format("    logic {}{};\n", range_text(s.bits), name);
     connections += fmt::format(",\n      .{0}_o({0})", name);
   };
   declare(schedule.steps.fault, "fault_valid");
