@@ -382,8 +382,7 @@ void place_regions(const Regions& regions, const Scene& scene, RuleProgram& prog
 }
 
 RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const ProgramPlace& place,
-                  std::vector<Slit> slits, const std::function<void()>& no_law) {
-  if (!text.core) no_law();
+                  std::vector<Slit> slits) {
   RuleProgram program = understood(text, place);
   program.slits = std::move(slits);
   for (const Slit& slit : program.slits) program.settings.push_back({"slit", slit.told(), ""});
@@ -410,9 +409,10 @@ RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packi
   const ProgramPlace place{.pitch = packing != nullptr ? packing->fcc.pitch : 0, .regions = regions};
   const auto with_tables = [&](RuleText text, std::vector<Slit> slits = {}) {
     text.potential = potential.tables();
-    return chosen(text, potential, place, std::move(slits), no_law);
+    return chosen(text, potential, place, std::move(slits));
   };
   const auto placed = [&](RuleText text, const ConfigTable& table) {
+    if (!text.core) no_law();
     std::vector<Slit> slits = text.core ? std::vector<Slit>() : read_slits(table);
     if (!slits.empty() && text.range == BondRange::current)
       table.at("slit").fail("bonds of the moment know no slit", "bonds = \"reference\"");
@@ -421,6 +421,7 @@ RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packi
   };
   if (!rule.is_table()) {
     RuleText text = text_of_file(rule, potential);
+    if (!text.core) no_law();
     return with_tables(std::move(text));
   }
   const ConfigTable table = rule.table();
