@@ -105,7 +105,8 @@ void compare(const Body& body, uint64_t steps, double stalls, Counts& counts) {
   Golden golden = golden_of(body.c.setup);
   for (uint64_t step = 0;; ++step) {
     const State now = golden.state();
-    ASSERT_EQ(trace.state_hash.at(step), hash_of(plan.lattice, now)) << step;
+    ASSERT_GT(trace.state_hash.size(), step) << (trace.stop ? trace.stop->text : "");
+    ASSERT_EQ(trace.state_hash[step], hash_of(plan.lattice, now)) << step;
     ASSERT_EQ(trace.frames.at(step), now) << step;
     ASSERT_EQ(run.order.at(step), order_of(golden)) << step;
     if (step == steps) break;
