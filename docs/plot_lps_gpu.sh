@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# docs/images/glass_1m.png: the damaged points that `cuboct-gpu lps scenes/bench/glass_1m.toml --points POINTS` leaves.
+# docs/images/glass_1m.png: the damaged points that `cuboct-gpu lps tests/gpu/lps/glass_1m.toml --points POINTS` leaves.
 # usage: plot_lps_gpu.sh POINTS
 set -euo pipefail
 gnuplot <<END

@@ -67,17 +67,6 @@ Fields shown_by(const Rule& rule, const RealFrame& frame) {
   return fields;
 }
 
-// Of the last state, whose bonds the trace holds: the share of each particle's bonds that is broken.
-void add_damage(const Scene& scene, const Trace& trace, Kept& last) {
-  if (scene.rule.rounds == nullptr || !trace.bonds || last.step != trace.steps_done) return;
-  const bool shown =
-      std::ranges::any_of(last.fields, [](const auto& field) { return field.first == "damage"; });
-  Body body = last.body;
-  body.bonds = std::make_shared<BondState>(BondState{scene.packing().x, *trace.bonds});
-  RoundsRun state(scene, body, {.on_demand = true}, 1);
-  if (!shown && state.breaks()) last.fields.emplace_back("damage", state.damage());
-}
-
 }  // namespace
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
@@ -121,7 +110,6 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   });
   if (!result.recorded.trouble.empty()) throw InputError(result.recorded.trouble);
   result.recorded.trace.asked = steps;
-  if (!result.kept.empty()) add_damage(scene, result.recorded.trace, result.kept.back());
   note_start(result.recorded.trace, loaded, asked.options.is_real(asked.engine));
   Items summary = summarise(loaded, result.recorded, asked.options.is_real(asked.engine));
   add_end(summary, result.recorded.trace);

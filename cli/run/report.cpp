@@ -289,8 +289,8 @@ std::string phase_section(const Trace& trace) {
   std::string rows;
   const auto phases = cycles_per_phase(trace);
   for (size_t k = 0; k < phases.size(); ++k)
-    rows += fmt::format("<tr><th>{}</th><td>{:.1f}</td><td>{}</td></tr>\n", phase_name(static_cast<int>(k), trace.rounds),
-                        phases[k].mean, phases[k].most);
+    rows += fmt::format("<tr><th>{}</th><td>{:.1f}</td><td>{}</td></tr>\n",
+                        phase_name(static_cast<int>(k), trace.rounds), phases[k].mean, phases[k].most);
   return "<h2>Cycles per phase</h2>\n<div class=\"wide\"><table>\n<tr><th></th><th>mean of a node</th>"
          "<th>most</th></tr>\n" +
          rows +

@@ -62,6 +62,27 @@ void add_bonds(Items& items, const IntegerProgram& program) {
                                           : "broken for ever: those may be anywhere");
 }
 
+// What a node of the rule's machine holds, sends and waits for.
+void add_machine(Items& items, const Plan& plan) {
+  if (const std::string why = machine_refusal(plan); !why.empty()) {
+    items.add("machine", "none: " + why);
+    return;
+  }
+  items.add("machine",
+            fmt::format("{} node{} of {} slots of {} bits", plan.nodes(), plan.nodes() == 1 ? "" : "s",
+                        plan.arch.capacity, plan.words.particle_bits));
+  for (size_t k = 0; k < plan.rounds.size(); ++k) {
+    const PlanRound& round = plan.rounds[k];
+    const std::string record = round.beats == 0
+                                   ? std::string("nothing is sent")
+                                   : fmt::format("a record of {} bits in {} beat{}", bits_of(round.record),
+                                                 round.beats, round.beats == 1 ? "" : "s");
+    items.add("machine of " + plan.program->program.rounds[k].name,
+              fmt::format("{}; {} cycles from a pair to its sum, {} of a finish", record, round.pipe,
+                          round.finish));
+  }
+}
+
 }  // namespace
 
 void add_integers(Items& items, const Scene& scene, const Arch& arch) {
@@ -76,6 +97,7 @@ void add_integers(Items& items, const Scene& scene, const Arch& arch) {
     add_bonds(items, program);
     for (size_t k = 0; k < program.program.rounds.size(); ++k)
       add_round(items, program.program.rounds[k], program.tables[k]);
+    add_machine(items, plan);
   } catch (const InputError& error) {
     items.add("integers", "none: " + parts_of(error).message);
   }

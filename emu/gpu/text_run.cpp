@@ -121,6 +121,7 @@ std::vector<std::vector<double>> TextRun::fields() {
     for (size_t i = 0; i < body_.size(); ++i)
       for (uint32_t k = 0; k < numbers; ++k) values[numbers * i + k] = look().fields[field.first + k][i];
   }
+  if (scene_.rule.rounds->text()->shows_damage) shown.push_back(damage());
   return shown;
 }
 

@@ -200,10 +200,10 @@ class IntegerRunner : public IntegerEngine {
       all.emplace_back("cycles", static_cast<double>(timing_->cycles(slots)));
     }
     all.insert(all.end(), {{"list_builds", static_cast<double>(counts.list_builds)},
-            {"node_steps", static_cast<double>(counts.node_steps)},
-            {"quiet_node_steps", static_cast<double>(counts.quiet_node_steps)},
-            {"compiled_steps", static_cast<double>(counts.compiled_steps)},
-            {"threads", engine_.threads()}});
+                           {"node_steps", static_cast<double>(counts.node_steps)},
+                           {"quiet_node_steps", static_cast<double>(counts.quiet_node_steps)},
+                           {"compiled_steps", static_cast<double>(counts.compiled_steps)},
+                           {"threads", engine_.threads()}});
     return all;
   }
   std::vector<PhaseSpan> phase_times() override { return std::exchange(spans_, {}); }

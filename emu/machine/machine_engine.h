@@ -19,9 +19,9 @@ namespace cuboct::emu {
 class MachineRun {
  public:
   // Runs until all nodes hold the initial state. `options.frames`: the steps whose states will be asked for;
-  // the last one too, where `keep_last` says so. A reference of `plan` is kept. Throws RunError for an initial
-  // state beyond a capacity, StepError where a link failed before, std::runtime_error for a bench that is
-  // stuck or interrupted before.
+  // the last one too, where `keep_last` says so. A reference of `plan` is kept. Throws RunError for an
+  // initial state beyond a capacity, StepError where a link failed before, std::runtime_error for a bench
+  // that is stuck or interrupted before.
   MachineRun(const Plan& plan, const State& initial, const RunOptions& options, const NodeFactory& nodes,
              const std::string& engine);
 

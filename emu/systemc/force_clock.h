@@ -40,8 +40,8 @@ struct ForceStream {
 // Steps all cycles of one streamer and its pipes from cycle `begin` on, register by register; the last one.
 // there(segment, entry): the cycle from which on the entry may be read; complete(segment): that from which on
 // it is known that the segment has no further entry. `settle`: cycles after all but the pipes is empty,
-// before which the last one does not come. `pipe`: from a pair's issue to its sum. issue(entry, mask) issues the lowest bits of `mask`, one per pipe,
-// and clears them.
+// before which the last one does not come. `pipe`: from a pair's issue to its sum. issue(entry, mask) issues
+// the lowest bits of `mask`, one per pipe, and clears them.
 template <typename There, typename Complete, typename Issue>
 uint64_t clock_stream(const Plan& plan, ForceStream& stream, int segments, uint64_t begin, There there,
                       Complete complete, int settle, int pipe, ForceCounts& counts, Issue issue) {

@@ -14,9 +14,9 @@
 
 namespace cuboct::emu {
 
-// A node's spans of a step of `rounds` rounds that began in cycle `start`, from the last cycles of its phases,
-// `end[phase][node]`. With `overlap` the force engine begins with its round. Written to `spans`, of all nodes,
-// where there is room, and added to the node's events.
+// A node's spans of a step of `rounds` rounds that began in cycle `start`, from the last cycles of its
+// phases, `end[phase][node]`. With `overlap` the force engine begins with its round. Written to `spans`, of
+// all nodes, where there is room, and added to the node's events.
 inline void write_spans(std::span<PhaseSpan> spans, uint32_t node, int64_t start,
                         std::span<const std::vector<int64_t>> end, int rounds, bool overlap,
                         MachineEvents& events) {

@@ -20,7 +20,8 @@ struct CuboctIn {
 // Outputs of one node: `link_*` after the edge that ends the cycle, the others of the cycle.
 struct CuboctOut {
   uint32_t phase_start, phase_end;
-  uint8_t observe_valid, fault_valid, fault_code, fault_stage, idle;  // fault_stage: of a rule of text, else 0
+  uint8_t observe_valid, fault_valid, fault_code, fault_stage,
+      idle;  // fault_stage: of a rule of text, else 0
   uint8_t link_valid, link_end, link_ready;
   uint8_t force_event;              // of a node alone: engine runs; by streamer: stalled, presents, issues
   uint8_t pairs;                    // of a node alone: pipes that take a pair

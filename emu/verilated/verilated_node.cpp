@@ -34,7 +34,10 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
 
 VerilatedNode::VerilatedNode(std::shared_ptr<const Library> library, const Plan& plan, uint32_t node,
                              uint8_t has_link, uint32_t seed)
-    : library_(std::move(library)), has_link_(has_link), model_(library_->create(seed)), rounds_(static_cast<int>(plan.rounds.size())) {
+    : library_(std::move(library)),
+      has_link_(has_link),
+      model_(library_->create(seed)),
+      rounds_(static_cast<int>(plan.rounds.size())) {
   if (plan.bricks.one_cell()) return;
   const auto words = [](const std::vector<bool>& bits) {
     std::vector<uint64_t> packed(bits.size() / 64 + 2);
@@ -119,7 +122,8 @@ std::string VerilatedNode::doing() const {
 NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed,
                             const std::string& optimise) {
   if (plan.words.bonds > 0)
-    throw InputError("the rtl engine: it holds no bonds of the body as packed yet").about({"rule.file", "rule"});
+    throw InputError("the rtl engine: it holds no bonds of the body as packed yet")
+        .about({"rule.file", "rule"});
   check_words(plan, 64 * kCuboctWords);
   auto library = std::make_shared<const Library>(compile_node(plan, build_directory, optimise));
   return [library, &plan, seed](uint32_t node, uint8_t has_link) {

@@ -168,9 +168,9 @@ const RuleProgram* text_of(const Rule& rule) {
 }
 
 void add_program(const RuleProgram& text, const Scene& scene, const Body& begin, Plan& plan) {
-  set_program(plan, std::make_shared<IntegerProgram>(integer_program(
-                        text, plan.rule, plan.arch.capacity,
-                        starts_of(text, scene.rule, begin, scene.periodic))));
+  set_program(plan,
+              std::make_shared<IntegerProgram>(integer_program(
+                  text, plan.rule, plan.arch.capacity, starts_of(text, scene.rule, begin, scene.periodic))));
   const std::string certificate = graph::certificate_of(plan.program->program);
   if (const graph::Refusal refusal = graph::refusal_of(certificate); refusal.line != 0)
     throw std::logic_error(

@@ -23,6 +23,7 @@
 #include "hw/rtl/rule_datapath.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct {
 namespace {
@@ -38,6 +39,10 @@ constexpr const char* kMarker = ".cuboct-emit";
 RtlDesign design_of(const Plan& plan) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
+  if (plan.program && plan.program->rows)
+    throw InputError("RTL holds no bonds of the body as packed yet",
+                     "engine systemc runs them, cycle by cycle")
+        .about({"rule.file", "rule"});
   RtlDesign design = decide(plan);
   if (plan.program) design.rule = rule_parameters(plan);
   return design;
@@ -56,9 +61,9 @@ void add_node(Files& files, const RtlDesign& design, const Plan& plan) {
       "cuboct_word_inbox.sv"};
   const std::set<std::string_view> arrival{"cuboct_arrival_relay.sv", "cuboct_box.sv", "cuboct_cull.sv"};
   // What runs the pair law, and a rule of text does not need.
-  const std::set<std::string_view> law{"cuboct_node_core.sv", "cuboct_datapath.sv",  "cuboct_pipe.sv",
-                                       "cuboct_update.sv",    "cuboct_candidate.sv", "cuboct_halos.sv",
-                                       "cuboct_pair_walk.sv", "cuboct_word_halos.sv", "cuboct_word_inbox.sv",
+  const std::set<std::string_view> law{"cuboct_node_core.sv",  "cuboct_datapath.sv",   "cuboct_pipe.sv",
+                                       "cuboct_update.sv",     "cuboct_candidate.sv",  "cuboct_halos.sv",
+                                       "cuboct_pair_walk.sv",  "cuboct_word_halos.sv", "cuboct_word_inbox.sv",
                                        "cuboct_pair_table.sv", "cuboct_axis_mults.sv", "cuboct_link_rx.sv"};
   const auto used = [&](std::string_view name) {
     if (design.text && law.contains(name)) return false;

@@ -177,7 +177,7 @@ std::string print_node_box(const RtlDesign& design) {
 }
 
 std::string print_node(const RtlDesign& design) {
-  const char* core_name = design.text     ? "cuboct_rule_core"
+  const char* core_name = design.text       ? "cuboct_rule_core"
                           : design.bricks() ? "cuboct_brick_core"
                                             : "cuboct_node_core";
   std::string text = head(design);
@@ -188,7 +188,8 @@ std::string print_node(const RtlDesign& design) {
   // What stands between the core's links and the node's: the core's port `x_o` is the wire `core_x`, `x_i`
   // the wire `wire_x`.
   const auto guarded = [&](const std::string& name) {
-    return design.checked && name != "fault_stage_o" && (name.starts_with("link_") || name.starts_with("fault_"));
+    return design.checked && name != "fault_stage_o" &&
+           (name.starts_with("link_") || name.starts_with("fault_"));
   };
   const auto inner = [](const std::string& name) {
     return (name.ends_with("_o") ? "core_" : "wire_") + name.substr(0, name.size() - 2);

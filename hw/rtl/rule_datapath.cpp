@@ -146,9 +146,11 @@ Slice Datapath::other_number(const std::string& of, int number, int round) const
 std::string Datapath::candidate() const {
   const int P = plan_.rule.widths.position_frac, seen = id_lsb() + plan_.words.id_bits;
   std::string text = fmt::format(
-      "// What of an own particle the others see: its position with sign bits, then what the rounds read of it. "
+      "// What of an own particle the others see: its position with sign bits, then what the rounds read of "
+      "it. "
       "Wires only.\n"
-      "module cuboct_rule_candidate (\n  input  logic {}own_i,  // up to its id\n  output logic {}candidate_o\n);\n",
+      "module cuboct_rule_candidate (\n  input  logic {}own_i,  // up to its id\n  output logic "
+      "{}candidate_o\n);\n",
       range_text(seen), range_text(candidate_bits_));
   for (int a = 0; a < plan_.rule.axes; ++a)
     text += fmt::format("  assign candidate_o[{} +: {}] = {{2'b00, {}}};\n", a * (P + 2), P + 2,
@@ -163,8 +165,8 @@ int Datapath::kick_bits(int round, int sum) const {
   const graph::Round& r = program_.rounds[at(round)];
   int bits = 1;
   for (size_t c = 0; c < r.sums[at(sum)].terms.size(); ++c)
-    bits = std::max(bits, signed_bits(form_of_output(pair_schedules_[at(round)],
-                                                     r.place(sum) + static_cast<int>(c))));
+    bits = std::max(
+        bits, signed_bits(form_of_output(pair_schedules_[at(round)], r.place(sum) + static_cast<int>(c))));
   return bits;
 }
 
@@ -172,8 +174,8 @@ int Datapath::sum_bits(int round, int sum) const {
   const graph::Round& r = program_.rounds[at(round)];
   int bits = kick_bits(round, sum);
   for (const int term : r.sums[at(sum)].terms)
-    bits = std::max(bits, signed_bits(pipeline::form_of(
-                              graph::summed(r.pair.nodes[at(term)].range, program_.partners))));
+    bits = std::max(
+        bits, signed_bits(pipeline::form_of(graph::summed(r.pair.nodes[at(term)].range, program_.partners))));
   return bits;
 }
 
@@ -188,10 +190,11 @@ std::string Datapath::types_of(const std::string& own_word, const std::string& o
   const int type_bits = plan_.rule.type_bits;
   const std::string own_type = of_other ? "" : own(own_word, FieldKind::type).text();
   const std::string other_type = pair || of_other ? other(other_word, FieldKind::type).text() : "";
-  text += fmt::format("    logic {}{};\n    always_comb begin\n      unique case ({})\n", range_text(bits), name,
-                      pair       ? fmt::format("{{{}, {}}}", own_type, other_type)
-                      : of_other ? other_type
-                                 : own_type);
+  text +=
+      fmt::format("    logic {}{};\n    always_comb begin\n      unique case ({})\n", range_text(bits), name,
+                  pair       ? fmt::format("{{{}, {}}}", own_type, other_type)
+                  : of_other ? other_type
+                             : own_type);
   for (int k = 0; k < static_cast<int>(values.size()); ++k) {
     const int key = pair ? (k / program_.types) << type_bits | k % program_.types : k;
     text += fmt::format("        {}: {} = {};\n", literal(key, pair ? 2 * type_bits : type_bits), name,
@@ -254,15 +257,15 @@ std::string Datapath::input(const Node& node, int round, bool pair, int bits, st
 }
 
 // Registers of the inputs, and what connects them.
-std::string Datapath::inputs(const graph::Graph& graph, const pipeline::Schedule& schedule, int round, bool pair,
-                             std::string& connections) {
+std::string Datapath::inputs(const graph::Graph& graph, const pipeline::Schedule& schedule, int round,
+                             bool pair, std::string& connections) {
   std::string before, declared, set;
   for (const pipeline::Port& port : schedule.steps.inputs) {
     const Node& node = graph.nodes[at(port.node)];
     const Form form = form_of_step(schedule, port.step);
     const std::string name = pipeline::port_name(node), value = input(node, round, pair, form.bits, before);
     const std::string reg = "in_" + name.substr(0, name.size() - 2) + "_q";
-    declared += fmt::format("    logic {}{}{};\n", form.is_signed ? "signed " : "", range_text(form.bits), reg);
+    declared += fmt::format("    logic {}{};\n", range_text(form.bits), reg);
     set += fmt::format("      {} <= {};\n", reg, value);
     connections += fmt::format(",\n      .{}({})", name, reg);
   }
@@ -270,20 +273,20 @@ std::string Datapath::inputs(const graph::Graph& graph, const pipeline::Schedule
   return before + declared + "    always_ff @(posedge clk_i) begin\n" + set + "    end\n";
 }
 
-// What the pipelines' outputs connect to: `name_o` to `name`.
+// What the pipelines' outputs connect to: `name_o` to `name`. None is declared signed, as a signed vector
+// whose bits are all picked is what yosys 0.23 fails at.
 std::string declared_outputs(const pipeline::Schedule& schedule, const pipeline::Outputs& outputs,
                              std::string& connections) {
   std::string text;
   for (size_t k = 0; k < outputs.names.size(); ++k) {
     const pipeline::Step& step = schedule.steps.steps[at(schedule.steps.outputs[k].step)];
-    text += fmt::format("    logic {}{}{};\n", step.is_signed ? "signed " : "", range_text(step.bits),
-                        outputs.names[k]);
+    text += fmt::format("    logic {}{};\n", range_text(step.bits), outputs.names[k]);
     connections += fmt::format(",\n      .{0}_o({0})", outputs.names[k]);
   }
   if (schedule.steps.fault < 0) return text + "    logic made;\n";
   const auto declare = [&](int step, const char* name) {
     const pipeline::Step& s = schedule.steps.steps[at(step)];
-    text += fmt::format("    logic {}{}{};\n", s.is_signed ? "signed " : "", range_text(s.bits), name);
+    text += fmt::format("    logic {}{};\n", range_text(s.bits), name);
     connections += fmt::format(",\n      .{0}_o({0})", name);
   };
   declare(schedule.steps.fault, "fault_valid");
@@ -298,7 +301,8 @@ std::string Datapath::pair_of(int k) {
   const int C = schedule.cycles;
   std::string connections;
   std::string text = fmt::format(
-      "\n  // Round {0}: a pair that is issued in cycle t has its inputs in registers in t+2, and comes to the sums in "
+      "\n  // Round {0}: a pair that is issued in cycle t has its inputs in registers in t+2, and comes to "
+      "the sums in "
       "t+{1}.\n"
       "  logic [ForcePipes-1:0] busy_{0}, fault_{0};\n"
       "  logic [ForcePipes*SlotBits-1:0] kick_slot_{0};\n"
@@ -330,7 +334,8 @@ std::string Datapath::pair_of(int k) {
   text += inputs(round.pair, schedule, k, true, connections);
   text += declared_outputs(schedule, pairs_[at(k)], connections);
   text += fmt::format(
-      "    cuboct_pair_{0} u_pipeline (\n      .clk_i, .rst_ni, .valid_i(age_q[2]){1},\n      .valid_o(made)\n    );\n"
+      "    cuboct_pair_{0} u_pipeline (\n      .clk_i, .rst_ni, .valid_i(age_q[2]){1},\n      "
+      ".valid_o(made)\n    );\n"
       "    assign busy_{0}[f] = (age_q != '0);\n"
       "    assign kick_slot_{0}[f*SlotBits +: SlotBits] = next_slot;\n",
       k + 1, connections);
@@ -343,7 +348,8 @@ std::string Datapath::pair_of(int k) {
       terms.push_back(Slice{fmt::format("sum_{}_{}", s, c), 0, form.bits, form.is_signed}.fit(kick));
     }
     text += fmt::format(
-        "    cuboct_sums #(\n      .Axes({0}), .KickBits({1}), .SumBits({2}), .Capacity({3}), .Spaced(0), .Adds(1),\n"
+        "    cuboct_sums #(\n      .Axes({0}), .KickBits({1}), .SumBits({2}), .Capacity({3}), .Spaced(0), "
+        ".Adds(1),\n"
         "      .SlotBits(SlotBits)\n    ) u_sums_{4} (\n      .clk_i, .rst_ni, .kick_valid_i(made && when),\n"
         "      .push_i({{{5}}}),\n      .next_slot_i(busy_{6}[f] ? next_slot : look_slot_i),\n"
         "      .take_i(take_i && round_i[{7}]), .sum_o(sums_{6}_{4}[f*{8} +: {8}])\n    );\n",
@@ -356,7 +362,8 @@ std::string Datapath::pair_of(int k) {
     text += fmt::format(
         "    assign fault_{0}[f] = made && when && fault_valid;\n"
         "    assign code_{0}[f*8 +: 8] = {{4'd{1}, {2}}} & {{8 {{fault_{0}[f]}}}};\n"
-        "    assign number_{0}[f*NumberBits +: NumberBits] = {{{{(NumberBits - {3}) {{{4}}}}}, fault_number}}\n"
+        "    assign number_{0}[f*NumberBits +: NumberBits] = {{{{(NumberBits - {3}) {{{4}}}}}, "
+        "fault_number}}\n"
         "                                                  & {{NumberBits {{fault_{0}[f]}}}};\n",
         k + 1, 2 * k, Slice{"fault_code", 0, code.bits, false}.fit(4), number.bits,
         number.is_signed ? fmt::format("fault_number[{}]", number.bits - 1) : "1'b0");
@@ -377,7 +384,8 @@ std::string Datapath::finish_of(int k) {
   const int own_bits = plan_.words.particle_bits + 2;
   std::string connections;
   std::string text = fmt::format(
-      "\n  // The finish of round {0}: a particle that is taken in cycle t has its inputs in registers in t+2, and is "
+      "\n  // The finish of round {0}: a particle that is taken in cycle t has its inputs in registers in "
+      "t+2, and is "
       "written\n  // in t+{1}.\n"
       "  logic written_{0}, finish_fault_{0};\n"
       "  logic {2}slot_{0};\n"
@@ -417,9 +425,11 @@ std::string Datapath::finish_of(int k) {
   text += inputs(round.finish, schedule, k, false, connections);
   text += declared_outputs(schedule, finishes_[at(k)], connections);
   text += fmt::format(
-      "    cuboct_finish_{0} u_pipeline (\n      .clk_i, .rst_ni, .valid_i(ready_q){1},\n      .valid_o(made)\n    );\n"
+      "    cuboct_finish_{0} u_pipeline (\n      .clk_i, .rst_ni, .valid_i(ready_q){1},\n      "
+      ".valid_o(made)\n    );\n"
       "    {2} #(.Bits({3}), .Depth({4})) u_waited (.clk_i, {5}.d_i(slot_q), .q_o(waited));\n"
-      "    cuboct_delay #(.Bits(SlotBits), .Depth({6})) u_place (.clk_i, .d_i(take_slot_i), .q_o(place_{0}));\n"
+      "    cuboct_delay #(.Bits(SlotBits), .Depth({6})) u_place (.clk_i, .d_i(take_slot_i), "
+      ".q_o(place_{0}));\n"
       "    assign written_{0} = made;\n",
       k + 1, connections, C + 1 >= 2 ? "cuboct_ring" : "cuboct_delay", own_bits, C + 1,
       C + 1 >= 2 ? ".rst_ni, " : "", C + 2);
@@ -429,9 +439,10 @@ std::string Datapath::finish_of(int k) {
     const graph::Write& write = round.writes[w];
     const WordField& f = own_field(FieldKind::field, -1, program_.place(write.field) + write.component);
     const Form form = form_of_output(schedule, static_cast<int>(w));
-    made[f.lsb] = {f.bits,
-                   Slice{fmt::format("field_{}_{}", write.field, write.component), 0, form.bits, form.is_signed}.fit(
-                       f.bits)};
+    made[f.lsb] = {
+        f.bits,
+        Slice{fmt::format("field_{}_{}", write.field, write.component), 0, form.bits, form.is_signed}.fit(
+            f.bits)};
   }
   std::string leaving;
   if (last) {
@@ -444,7 +455,9 @@ std::string Datapath::finish_of(int k) {
           text += fmt::format("    logic {}moved_{};\n    assign moved_{} = {{2'b00, {}, {}}} + {};\n",
                               range_text(P + G + 2), a, a, own("waited", FieldKind::position, a).text(),
                               own("waited", FieldKind::residue, a).text(), value.fit(P + G + 2));
-          const auto moved = [&](int lsb, int bits) { return fmt::format("moved_{}[{} +: {}]", a, lsb, bits); };
+          const auto moved = [&](int lsb, int bits) {
+            return fmt::format("moved_{}[{} +: {}]", a, lsb, bits);
+          };
           made[own_field(FieldKind::position, a).lsb] = {P, moved(G, P)};
           made[own_field(FieldKind::residue, a).lsb] = {G, moved(0, G)};
           made[a == 0 ? own_bits - 2 : own_field(FieldKind::away, a).lsb] = {2, moved(P + G, 2)};
@@ -485,7 +498,8 @@ std::string Datapath::finish_of(int k) {
         number.is_signed ? fmt::format("fault_number[{}]", number.bits - 1) : "1'b0");
   } else {
     text += fmt::format(
-        "    assign finish_fault_{0} = 1'b0;\n    assign finish_code_{0} = '0;\n    assign finish_number_{0} = '0;\n",
+        "    assign finish_fault_{0} = 1'b0;\n    assign finish_code_{0} = '0;\n    assign finish_number_{0} "
+        "= '0;\n",
         k + 1);
   }
   return text + "    logic unused_waited;\n    assign unused_waited = ^{waited, slot_q};\n  end\n";
@@ -495,7 +509,8 @@ std::string Datapath::text() {
   const int own_bits = plan_.words.particle_bits + 2, seen = id_lsb() + plan_.words.id_bits;
   std::string rounds_text;
   for (int k = 0; k < rounds(); ++k) rounds_text += pair_of(k) + finish_of(k);
-  number_bits_ = std::max(number_bits_, static_cast<int>(std::bit_width(static_cast<unsigned>(plan_.arch.capacity))) + 1);
+  number_bits_ = std::max(number_bits_,
+                          static_cast<int>(std::bit_width(static_cast<unsigned>(plan_.arch.capacity))) + 1);
   const auto joined = [&](const char* format, const char* between) {
     std::vector<std::string> parts;
     for (int k = 1; k <= rounds(); ++k) parts.push_back(fmt::format(fmt::runtime(format), k));
@@ -503,15 +518,18 @@ std::string Datapath::text() {
   };
   std::string slots;
   for (int k = 0; k < rounds(); ++k)
-    slots += fmt::format("{}(kick_slot_{} & {{(ForcePipes * SlotBits) {{round_i[{}]}}}})", k > 0 ? " | " : "", k + 1, k);
+    slots += fmt::format("{}(kick_slot_{} & {{(ForcePipes * SlotBits) {{round_i[{}]}}}})", k > 0 ? " | " : "",
+                         k + 1, k);
   std::string places;
   for (int k = 0; k < rounds(); ++k)
     places += fmt::format("{}(place_{} & {{SlotBits {{written_{}}}}})", k > 0 ? " | " : "", k + 1, k + 1);
   std::string leaving;
   for (int k = 0; k < rounds(); ++k) leaving += fmt::format("{}leaving_{}", k > 0 ? " | " : "", k + 1);
   std::string text = fmt::format(
-      "// What becomes of particles in a node, by the rule: pairs go through the pipelines of their round, what they "
-      "make is\n// summed by particle, the finish of each round writes the particles, and the least fault of the step "
+      "// What becomes of particles in a node, by the rule: pairs go through the pipelines of their round, "
+      "what they "
+      "make is\n// summed by particle, the finish of each round writes the particles, and the least fault of "
+      "the step "
       "is kept.\n"
       "module cuboct_rule_datapath (\n"
       "  input  logic clk_i,\n"
@@ -565,7 +583,8 @@ std::string Datapath::text() {
       "  assign slot_number_o = {};\n"
       "  assign slot_o        = {};\n"
       "  assign leaving_o     = {};\n",
-      joined("busy_{}", " | "), slots, joined("written_{}", " || "), places, joined("slot_{}", " | "), leaving);
+      joined("busy_{}", " | "), slots, joined("written_{}", " || "), places, joined("slot_{}", " | "),
+      leaving);
   // The id of a finish's fault is that of the slot.
   text += fmt::format(
       "\n  logic [ForcePipes*64-1:0] pipe_numbers;\n"
@@ -574,7 +593,8 @@ std::string Datapath::text() {
       "  assign pipe_number   = {};\n"
       "  assign finish_number = {};\n"
       "  for (genvar f = 0; f < ForcePipes; f++) begin : gen_number\n"
-      "    assign pipe_numbers[f*64 +: 64] = {{{{(65 - NumberBits) {{pipe_number[f*NumberBits+NumberBits-1]}}}},\n"
+      "    assign pipe_numbers[f*64 +: 64] = {{{{(65 - NumberBits) "
+      "{{pipe_number[f*NumberBits+NumberBits-1]}}}},\n"
       "                                       pipe_number[f*NumberBits +: NumberBits-1]}};\n"
       "  end\n"
       "  logic       move_fault_q, move_full_q;\n"
@@ -586,7 +606,8 @@ std::string Datapath::text() {
       "  end\n"
       "  always_ff @(posedge clk_i) begin\n"
       "    move_full_q <= move_full_i;\n"
-      "    move_code_q <= {{4'd{}, 4'd6 + {{1'b0, move_axis_i, 1'b0}} + {{3'b000, move_full_i}}}};  // left, full: 6 7, "
+      "    move_code_q <= {{4'd{}, 4'd6 + {{1'b0, move_axis_i, 1'b0}} + {{3'b000, move_full_i}}}};  // left, "
+      "full: 6 7, "
       "8 9, 10 11\n"
       "    move_id_q   <= move_id_i;\n"
       "  end\n"
@@ -596,16 +617,18 @@ std::string Datapath::text() {
       "    .clk_i, .rst_ni, .clear_i(step_end_i), .valid_i({}), .code_i({}),\n"
       "    .id_i(kick_id_i), .number_i(pipe_numbers), .update_valid_i({}),\n"
       "    .update_code_i({}), .update_id_i({}),\n"
-      "    .update_number_i({{{{(65 - NumberBits) {{finish_number[NumberBits-1]}}}}, finish_number[NumberBits-2:0]}}),\n"
+      "    .update_number_i({{{{(65 - NumberBits) {{finish_number[NumberBits-1]}}}}, "
+      "finish_number[NumberBits-2:0]}}),\n"
       "    .move_valid_i(move_fault_q), .move_code_i(move_code_q), .move_id_i(move_id_q),\n"
-      "    .move_number_i(move_full_q ? 64'd{} : 64'd0), .valid_o(fault_o), .code_o(fault_code_o), .id_o(fault_id_o),\n"
+      "    .move_number_i(move_full_q ? 64'd{} : 64'd0), .valid_o(fault_o), .code_o(fault_code_o), "
+      ".id_o(fault_id_o),\n"
       "    .number_o(fault_number_o)\n"
       "  );\n"
       "  logic unused_candidate;\n  assign unused_candidate = ^candidate_i;\nendmodule\n",
       joined("number_{}", " | "), joined("finish_number_{}", " | "), range_text(plan_.words.id_bits),
       2 * rounds(), plan_.words.id_bits, joined("fault_{}", " | "), joined("code_{}", " | "),
-      joined("finish_fault_{}", " || "), joined("finish_code_{}", " | "),
-      own("slot_o", FieldKind::id).text(), plan_.arch.capacity);
+      joined("finish_fault_{}", " || "), joined("finish_code_{}", " | "), own("slot_o", FieldKind::id).text(),
+      plan_.arch.capacity);
   return text;
 }
 
@@ -616,7 +639,8 @@ std::vector<pipeline::Module> Datapath::pipelines() const {
   };
   for (int k = 0; k < rounds(); ++k) {
     const graph::Round& round = program_.rounds[at(k)];
-    add(print_pipeline(fmt::format("cuboct_pair_{}", k + 1), round.pair, pairs_[at(k)], pair_schedules_[at(k)]));
+    add(print_pipeline(fmt::format("cuboct_pair_{}", k + 1), round.pair, pairs_[at(k)],
+                       pair_schedules_[at(k)]));
     add(print_pipeline(fmt::format("cuboct_finish_{}", k + 1), round.finish, finishes_[at(k)],
                        finish_schedules_[at(k)]));
   }
@@ -630,7 +654,8 @@ std::vector<std::pair<std::string, std::string>> rule_parameters(const Plan& pla
   const size_t rounds = plan.rounds.size();
   const auto packed = [&](auto value) {
     std::string text;
-    for (size_t k = rounds; k-- > 0;) text += (text.empty() ? "" : ", ") + fmt::format("16'd{}", value(plan.rounds[k]));
+    for (size_t k = rounds; k-- > 0;)
+      text += (text.empty() ? "" : ", ") + fmt::format("16'd{}", value(plan.rounds[k]));
     return "{" + text + "}";
   };
   int most = 1;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The modules of a node that are made of a rule of text: what others see of a particle, and what becomes of
-// pairs and particles in each round. rtl/rounds/cuboct_rule_core.sv instantiates them; the pipelines are those
-// of hw/pipeline.
+// pairs and particles in each round. rtl/rounds/cuboct_rule_core.sv instantiates them; the pipelines are
+// those of hw/pipeline.
 #pragma once
 
 #include <string>

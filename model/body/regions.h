@@ -26,6 +26,12 @@ class Regions {
   ShapePtr named(const ConfigValue& name) const;
   // The particles whose initial position lies in the region (surface included); none is an error.
   std::vector<uint32_t> select(const ConfigValue& value, const std::vector<Vec3>& x, double tolerance) const;
+  // The k-th region of the file, in the order of names().
+  const std::vector<std::string>& names() const { return names_; }
+  ShapePtr shape(size_t k) const { return resolve(k, values_[k]); }
+  std::vector<uint32_t> select(size_t k, const std::vector<Vec3>& x, double tolerance) const {
+    return select(values_[k], x, tolerance);
+  }
 
  private:
   ShapePtr resolve(size_t region, const ConfigValue& at) const;

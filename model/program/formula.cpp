@@ -39,6 +39,10 @@ std::string told(const Dimension& dimension) {
   return dimension == Dimension{} ? "a plain number" : describe(dimension);
 }
 
+bool is_inside(const std::string& function) {
+  return function == "inside" || function == "inside_i" || function == "inside_j";
+}
+
 Dimension combined(const Dimension& a, const Dimension& b, int sign) {
   Dimension of = a;
   for (size_t k = 0; k < of.exponent.size(); ++k) of.exponent[k] += sign * b.exponent[k];
@@ -48,7 +52,7 @@ Dimension combined(const Dimension& a, const Dimension& b, int sign) {
 }  // namespace
 
 bool is_function(const std::string& name) {
-  return name == "slope" ||
+  return name == "slope" || is_inside(name) ||
          std::ranges::any_of(kFunctions, [&](const Function& f) { return name == f.name; });
 }
 
@@ -228,7 +232,28 @@ class Compiler {
       fail(argument, fmt::format("{} is needed here, not {}", told(f.argument), told(a.dimension)));
     return number(f.make(a.node[0], of_slope), of_slope ? combined(f.value, f.argument, -1) : f.value);
   }
+  // Whether a particle stands in a region.
+  Value inside(const Expression& e) {
+    const auto of = scope_.inside_.find(e.text);
+    if (of == scope_.inside_.end())
+      fail(e, fmt::format("'{}' is not known here", e.text),
+           "inside(region) is of a particle's start, inside_i and inside_j are of a bond's; a field keeps "
+           "them");
+    if (e.of.size() != 1 || e.of[0].kind != Expression::Kind::name)
+      fail(e, fmt::format("'{}' takes the name of a region", e.text), e.text + "(top)");
+    const std::vector<std::string>& known = *scope_.regions_;
+    const auto at = std::ranges::find(known, e.of[0].text);
+    if (at == known.end()) {
+      const std::string near = did_you_mean(e.of[0].text, known);
+      fail(e.of[0], fmt::format("unknown region '{}'", e.of[0].text),
+           !near.empty()   ? near
+           : known.empty() ? "[regions] of the scene names shapes"
+                           : "known: " + list_of(known));
+    }
+    return truth(graph_.input(of->second, static_cast<uint32_t>(at - known.begin())));
+  }
   Value call(const Expression& e) {
+    if (is_inside(e.text)) return inside(e);
     if (e.text == "slope" && !scope_.functions_.empty()) return slope(e);
     if (const auto table = scope_.functions_.find(e.text); table != scope_.functions_.end()) {
       if (e.of.size() != 1)

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "model/program/expression.h"
 #include "model/program/real_graph.h"
@@ -65,6 +66,12 @@ class Scope {
   void define_function(const std::string& name, TableFunction function) {
     functions_[name] = std::move(function);
   }
+  // A function of a region's name: a truth. `regions` must outlive the scope.
+  void define_inside(const std::string& function, RealSource source,
+                     const std::vector<std::string>& regions) {
+    inside_[function] = source;
+    regions_ = &regions;
+  }
   void allow_noise() { noise_ = true; }
 
   // Throws what the formula's `fail` throws.
@@ -81,6 +88,8 @@ class Scope {
   bool units_, noise_ = false;
   std::map<std::string, std::function<Value()>> names_;
   std::map<std::string, TableFunction> functions_;
+  std::map<std::string, RealSource> inside_;
+  const std::vector<std::string>* regions_ = nullptr;
   const std::map<std::string, Formula>* lets_ = nullptr;
   std::map<std::string, Value> made_;
   std::set<std::string> open_;  // lets that are being compiled

@@ -69,12 +69,13 @@ class ProgramTerms final : public RoundsTerms {
       element_.push_back(program.element.empty() ? 1 : program.element[type]);
     }
     if (program.declaration.bonds == BondRange::reference)
-      bonds_ = reference_bonds(x0_, periodic, program.reach);
+      bonds_ = reference_bonds(x0_, periodic, program.reach, program.slits);
     else
       near_.emplace(program.reach, periodic);
     work_.assign(program.particle_numbers, std::vector<double>(body.size(), 0));
     next_ = work_;
     if (near_ && !program.setup.empty()) near_->update(x0_);
+    find_regions();
     start_particles();
     start_bonds();
     for (size_t k = 0; k < program.setup.size(); ++k) {
@@ -161,13 +162,23 @@ class ProgramTerms final : public RoundsTerms {
     }
     return sum / (2 * volume);
   }
-  double damage(size_t particle) const override {
-    const uint64_t begin = bonds_.begin(particle), count = bonds_.end(particle) - begin;
-    if (!program_.broken_at || count == 0) return 0;
+  std::vector<double> damage() const override {
+    std::vector<double> shares(x0_.size(), 0);
+    if (!program_.broken_at || bonds_.other.empty()) return shares;
     RealBlock block(program_.broken);
-    block.run(count, [&](const RealInput& input, double* to) { fill_bond(input, begin, count, to); });
-    const double* broken = block.of(*program_.broken_at);
-    return std::count(broken, broken + count, 1.0) / static_cast<double>(count);
+    for_rows(0, x0_.size(), [&](const Rows& rows) {
+      block.run(rows.lanes(),
+                [&](const RealInput& input, double* to) { fill_bond(input, rows.bond, rows.lanes(), to); });
+      const double* broken = block.of(*program_.broken_at);
+      for (size_t i = 0; i < rows.particles(); ++i) {
+        const size_t first = rows.begin[i], count = rows.begin[i + 1] - first;
+        if (count > 0)
+          shares[rows.first + i] =
+              static_cast<double>(std::count(broken + first, broken + first + count, 1.0)) /
+              static_cast<double>(count);
+      }
+    });
+    return shares;
   }
   uint64_t bonds() const override {
     if (!near_) return bonds_.other.size() / 2;
@@ -184,6 +195,7 @@ class ProgramTerms final : public RoundsTerms {
       for (size_t i = 0; i < x0_.size(); ++i)
         for (uint32_t k = 0; k < numbers; ++k) values[numbers * i + k] = work_[field.first + k][i];
     }
+    if (program_.shows_damage) fields.push_back(damage());
     return fields;
   }
 
@@ -311,6 +323,9 @@ class ProgramTerms final : public RoundsTerms {
       case Source::own_element:
       case Source::other_element:
         return element_[i];
+      case Source::own_region:
+      case Source::other_region:
+        return inside_[input.index][i];
       case Source::noise:
         return noise(input.index, i, i);
       default:
@@ -350,6 +365,7 @@ class ProgramTerms final : public RoundsTerms {
         case Source::other_mass:
         case Source::other_field:
         case Source::other_element:
+        case Source::other_region:
           fill_at(input, rows.other, to);
           break;
         default:
@@ -422,6 +438,11 @@ class ProgramTerms final : public RoundsTerms {
     for (const ProgramWrite& write : round.made) work_[write.number].swap(next_[write.number]);
   }
 
+  void find_regions() {
+    inside_.resize(program_.regions.size());
+    for (const uint32_t k : regions_of_starts(program_))
+      for (const Vec3& x : x0_) inside_[k].push_back(program_.regions[k](x) ? 1 : 0);
+  }
   void start_particles() {
     size_t most = 0;
     for (const auto* rounds : {&program_.setup, &program_.rounds})
@@ -459,6 +480,7 @@ class ProgramTerms final : public RoundsTerms {
   const std::vector<Vec3>* x_;
   std::vector<Vec3> v_, force_;
   std::vector<double> mass_, element_;
+  std::vector<std::vector<double>> inside_;  // [region][particle], of those that starts name
   ReferenceBonds bonds_{{0}, {}, {}};
   std::optional<NearRows> near_;
   mutable std::mutex found_;

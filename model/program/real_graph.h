@@ -61,7 +61,9 @@ enum class RealSource : uint8_t {
   time_step,    // s
   own_element,  // 2^k of the k-th element of the rule's potential
   other_element,
-  made,   // 1 where a step is made, 0 where the state is only looked at
+  made,        // 1 where a step is made, 0 where the state is only looked at
+  own_region,  // whether the particle stands in a region, as packed; index: which
+  other_region,
   noise,  // of own and other, of a particle alone of own; index: its stream
 };
 

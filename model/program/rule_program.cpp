@@ -312,6 +312,7 @@ class Understanding {
       scope.define_vector("x", Source::position, 0, quantity::length.dimension);
       scope.define_vector("v", Source::own_velocity, 0, quantity::velocity.dimension);
       scope.define_number("mass", Source::own_mass, 0, quantity::mass.dimension);
+      scope.define_inside("inside", Source::own_region, place_.regions);
       define_particle(scope, Source::own_field, "", k);
       program_.particle[k].start = start_of(field, scope);
     }
@@ -323,6 +324,8 @@ class Understanding {
       define_particle(scope, Source::own_field, "_i", text_.particle.size());
       define_particle(scope, Source::other_field, "_j", text_.particle.size());
       scope.define_vector("x_i", Source::position, 0, quantity::length.dimension);
+      scope.define_inside("inside_i", Source::own_region, place_.regions);
+      scope.define_inside("inside_j", Source::other_region, place_.regions);
       define_bonds(scope, k);
       program_.bond[k].start = start_of(text_.bond[k], scope);
     }
@@ -514,6 +517,11 @@ class Understanding {
       if (program_.particle[k].kept) rule.kept.push_back(field.name);
       if (field.shown) rule.shown.push_back(rule.particle.back());
     }
+    program_.shows_damage =
+        program_.broken_at && text_.range == BondRange::reference &&
+        std::ranges::none_of(text_.particle, [](auto& field) { return field.name == "damage"; });
+    if (program_.shows_damage)
+      rule.shown.push_back({"damage", 1, "1", "of its bonds the share that is broken"});
     if (!text_.still) rule.particle.push_back({kForceField, 3, "N", "moves the particle"});
     for (size_t k = 0; k < text_.bond.size(); ++k) {
       const RuleText::Field& field = text_.bond[k];
@@ -536,6 +544,16 @@ class Understanding {
 };
 
 }  // namespace
+
+std::vector<uint32_t> regions_of_starts(const RuleProgram& program) {
+  std::set<uint32_t> numbers;
+  for (const RealGraph* graph : {&program.start, &program.bond_start})
+    for (const RealNode& node : graph->nodes())
+      if (node.op == RealOp::input &&
+          (node.input.source == Source::own_region || node.input.source == Source::other_region))
+        numbers.insert(node.input.index);
+  return {numbers.begin(), numbers.end()};
+}
 
 RuleProgram understood(const RuleText& text, const ProgramPlace& place) {
   return Understanding(text, place).program();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "model/program/real_graph.h"
 #include "model/program/rule_text.h"
 #include "model/rules/declaration.h"
+#include "model/rules/reference_bonds.h"
 
 namespace cuboct {
 
@@ -65,12 +67,20 @@ struct RuleProgram {
   uint64_t first_step = 0;
   // By type of particles 2^k of the k-th element of the potential; empty: all are the first.
   std::vector<double> element;
+  bool shows_damage = false;  // the last of the declaration's `shown` is the share of bonds that are broken
+  std::vector<Slit> slits;    // that bonds of the body as packed do not pass
+  // By number of the regions that starts name, whether one holds a place (m, as packed); empty: of others.
+  std::vector<std::function<bool(const Vec3&)>> regions;
 };
 
 // What the scene gives a rule.
 struct ProgramPlace {
-  double pitch = 0;  // m, of the packing; 0: there is none
+  double pitch = 0;                       // m, of the packing; 0: there is none
+  std::vector<std::string> regions = {};  // names
 };
+
+// The regions that starts name, by number.
+std::vector<uint32_t> regions_of_starts(const RuleProgram& program);
 
 // InputError, with its place, where the text does not hold together.
 RuleProgram understood(const RuleText& text, const ProgramPlace& place);

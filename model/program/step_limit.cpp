@@ -186,11 +186,7 @@ class Start {
     terms_->velocities(v);
     terms_->time(0);
     terms_->begin(x);
-    for (size_t round = 0; round < program_.rounds.size(); ++round) {
-      terms_->pair(round, 0, x.size(), keeps);
-      terms_->finish(round, 0, x.size());
-      terms_->end(round, keeps);
-    }
+    run_rounds(*terms_, program_.rounds.size(), x.size(), keeps);
   }
   std::vector<Vec3> forces(const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
     evaluate(x, v, false);

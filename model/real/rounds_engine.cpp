@@ -7,12 +7,9 @@
 #include <stdexcept>
 
 #include "model/base/error.h"
-#include "model/base/parallel.h"
 
 namespace cuboct {
 namespace {
-
-constexpr size_t kRows = 64;  // of a part: rows differ in their work, parts are dealt out one by one
 
 Body as_packed(Body body) {
   if (body.bonds) body.x = body.bonds->packed;
@@ -90,20 +87,11 @@ class RoundsEngine final : public RealEngine {
   }
 
  private:
-  // The rounds, one after another: none begins before all particles have finished the one before it.
   void evaluate(bool keeps) const {
     terms_->velocities(v_);
     terms_->time(steps_);
     terms_->begin(x_);
-    const size_t parts = (x_.size() + kRows - 1) / kRows;
-    for (size_t round = 0; round < rounds_.declaration().rounds.size(); ++round) {
-      for_each_part(parts, options_.threads, [&](size_t part, int) {
-        const size_t begin = part * kRows, end = std::min(begin + kRows, x_.size());
-        terms_->pair(round, begin, end, keeps);
-        terms_->finish(round, begin, end);
-      });
-      terms_->end(round, keeps);
-    }
+    run_rounds(*terms_, rounds_.declaration().rounds.size(), x_.size(), keeps, options_.threads);
     fresh_ = true;
   }
   void refresh() const {

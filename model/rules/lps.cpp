@@ -199,12 +199,7 @@ std::vector<DeclarationLine> LpsRule::settings() const {
   if (m.breaks())
     lines.push_back({"critical stretch", fmt::format("{:.6g}", m.critical_stretch),
                      m.damage_width > 0 ? fmt::format("over a width of {:.3g}", m.damage_width) : "at once"});
-  const auto text = [](const Vec3& r) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", r[0], r[1], r[2]); };
-  for (const Slit& slit : slits_)
-    lines.push_back(
-        {"slit",
-         fmt::format("from {} m along {} and {} m", text(slit.corner), text(slit.along), text(slit.across)),
-         ""});
+  for (const Slit& slit : slits_) lines.push_back({"slit", slit.told(), ""});
   if (const auto kept = std::ranges::count(unbreakable_, 1); kept > 0)
     lines.push_back({"unbreakable", fmt::format("{} particles", kept), "all bonds of theirs"});
   return lines;

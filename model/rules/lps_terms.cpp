@@ -130,19 +130,20 @@ class TermsOfBody final : public LpsTerms {
     return all;
   }
 
-  double damage(size_t i) const override {
-    if (left_.empty()) return 0;
-    double whole = 0, here = 0;
-    for (uint64_t b = bonds_.begin(i); b < bonds_.end(i); ++b)
-      whole += volume_share(b), here += left_[b] * volume_share(b);
-    return 1 - here / whole;
+  std::vector<double> damage() const override {
+    std::vector<double> damaged;
+    for (size_t i = 0; i < u_.size() && !left_.empty(); ++i) {
+      double whole = 0, here = 0;
+      for (uint64_t b = bonds_.begin(i); b < bonds_.end(i); ++b)
+        whole += volume_share(b), here += left_[b] * volume_share(b);
+      damaged.push_back(1 - here / whole);
+    }
+    return damaged;
   }
   uint64_t bonds() const override { return bonds_.other.size() / 2; }
   std::vector<std::vector<double>> shown() const override {
     std::vector<std::vector<double>> fields{dilatation_};
-    if (!m_.breaks()) return fields;
-    std::vector<double>& damaged = fields.emplace_back(u_.size());
-    for (size_t i = 0; i < damaged.size(); ++i) damaged[i] = damage(i);
+    if (m_.breaks()) fields.push_back(damage());
     return fields;
   }
 

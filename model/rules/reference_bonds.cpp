@@ -44,6 +44,11 @@ bool Slit::cuts(const Vec3& from, const Vec3& d) const {
   return at[0] >= 0 && at[0] <= 1 && at[1] >= 0 && at[1] <= 1 && at[2] >= 0 && at[2] <= 1;
 }
 
+std::string Slit::told() const {
+  const auto text = [](const Vec3& r) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", r[0], r[1], r[2]); };
+  return fmt::format("from {} m along {} and {} m", text(corner), text(along), text(across));
+}
+
 ReferenceBonds reference_bonds(std::span<const Vec3> x, const Periodic& periodic, double reach,
                                const std::vector<Slit>& slits) {
   const std::vector<Half> halves = halves_of(x, periodic, reach, slits);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "model/contract/rule.h"
@@ -15,6 +16,7 @@ struct Slit {
   Vec3 corner = Vec3::Zero(), along = Vec3::Zero(), across = Vec3::Zero();
   // Whether the straight line from `from` to `from + d` passes through.
   bool cuts(const Vec3& from, const Vec3& d) const;
+  std::string told() const;  // for people
 };
 
 struct ReferenceBonds {

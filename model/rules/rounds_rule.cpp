@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/base/parallel.h"
 
 namespace cuboct {
 namespace {
@@ -14,13 +16,29 @@ namespace {
   const size_t rounds = rule.declaration().rounds.size();
   throw InputError(fmt::format("the rule '{}' has {} round{} of its own, and {} knows the pair law alone",
                                rule.declaration().name, rounds, rounds == 1 ? "" : "s", who),
-                   rule.text() != nullptr ? "engines reference, golden, lattice and gpu run it; a force of r "
-                                            "along d, with 'core', is a pair law"
-                                          : "the reference engine runs it")
+                   rule.text() != nullptr
+                       ? "engines reference, golden, lattice, gpu, systemc and rtl run it; a force of r "
+                         "along d, with 'core', is a pair law"
+                       : "the reference engine runs it")
       .about({"rule.kind", "rule.file", "rule"});
 }
 
 }  // namespace
+
+void run_rounds(RoundsTerms& terms, size_t rounds, size_t particles, bool keeps, int threads) {
+  // Of a part where threads share them: rows differ in their work, parts are dealt out one by one.
+  constexpr size_t kRows = 64;
+  const size_t rows = threads < 2 ? std::max<size_t>(particles, 1) : kRows;
+  const size_t parts = (particles + rows - 1) / rows;
+  for (size_t round = 0; round < rounds; ++round) {
+    for_each_part(parts, threads, [&](size_t part, int) {
+      const size_t begin = part * rows, end = std::min(begin + rows, particles);
+      terms.pair(round, begin, end, keeps);
+      terms.finish(round, begin, end);
+    });
+    terms.end(round, keeps);
+  }
+}
 
 bool has_reference_bonds(const Rule& rule) {
   return rule.rounds != nullptr && rule.rounds->declaration().bonds == BondRange::reference;

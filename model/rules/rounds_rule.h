@@ -46,8 +46,9 @@ class RoundsTerms {
   // By what the last rounds left. J, or RoundsError; Pa, tension positive, over `volume` (m^3).
   virtual double energy() const = 0;
   virtual Mat3 stress(size_t particle, double volume) const = 0;
-  // Of a particle's bonds the share that is broken, 0 to 1, and how many bonds there are (each once).
-  virtual double damage(size_t) const { return 0; }
+  // Of each particle's bonds the share that is broken, 0 to 1; empty: none breaks. How many bonds there are
+  // (each once).
+  virtual std::vector<double> damage() const { return {}; }
   virtual uint64_t bonds() const = 0;
   // What the declaration's `shown` names, in its order: [field][particle x its numbers].
   virtual std::vector<std::vector<double>> shown() const { return {}; }
@@ -58,6 +59,10 @@ class RoundsTerms {
   // Of what decides what memory() means: the bonds that there are, and the law by which they give way.
   virtual uint64_t memory_hash() const { return 0; }
 };
+
+// All rounds on all particles, one round after another, from what begin() was given: none begins before all
+// particles have finished the one before it.
+void run_rounds(RoundsTerms& terms, size_t rounds, size_t particles, bool keeps, int threads = 1);
 
 struct RuleProgram;  // model/program/rule_program.h
 

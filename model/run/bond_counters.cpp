@@ -10,10 +10,7 @@ Counters bond_counters(const Rule& rule, const RoundsTerms& terms, size_t partic
   // Bonds of the moment are whole or are not there.
   if (!has_reference_bonds(rule)) return counters;
   double damaged = 0, most = 0;
-  for (size_t i = 0; i < particles; ++i) {
-    const double damage = terms.damage(i);
-    damaged += damage, most = std::max(most, damage);
-  }
+  for (const double damage : terms.damage()) damaged += damage, most = std::max(most, damage);
   counters.emplace_back("mean_damage", damaged / static_cast<double>(particles));
   counters.emplace_back("largest_damage", most);
   return counters;

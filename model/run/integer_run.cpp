@@ -169,6 +169,7 @@ std::vector<std::vector<double>> IntegerRun::fields() {
         values.push_back(real_of(setting_.program.scales[f],
                                  field_numbers_[i * static_cast<size_t>(program.numbers()) + first + n]));
   }
+  if (text_of(scene_).shows_damage) shown.push_back(damage());
   return shown;
 }
 

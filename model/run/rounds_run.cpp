@@ -174,9 +174,8 @@ bool RoundsRun::breaks() const {
 }
 
 std::vector<double> RoundsRun::damage() {
-  const RoundsTerms& terms = *reference().kept_terms();
-  std::vector<double> damage(body_.size());
-  for (size_t i = 0; i < damage.size(); ++i) damage[i] = terms.damage(i);
+  std::vector<double> damage = reference().kept_terms()->damage();
+  damage.resize(body_.size(), 0);
   return damage;
 }
 
@@ -185,8 +184,6 @@ std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
   const std::vector<RuleField>& names = scene_.rule.rounds->declaration().shown;
   std::vector<std::vector<double>> values = fields();
   for (size_t k = 0; k < names.size(); ++k) shown.emplace_back(names[k].name, std::move(values[k]));
-  if (breaks() && std::ranges::none_of(names, [](const RuleField& f) { return f.name == "damage"; }))
-    shown.emplace_back("damage", damage());
   return shown;
 }
 

@@ -40,7 +40,7 @@ class RoundsRun : public Engine {
   // Whether the rule's bonds can break; of each particle's the share that did, as the last step left it.
   bool breaks() const;
   std::vector<double> damage();
-  // What the rule shows of its particles, by name: [particle x its numbers]. With "damage" where bonds break.
+  // What the rule shows of its particles, by name: [particle x its numbers].
   std::vector<std::pair<std::string, std::vector<double>>> shown();
 
  protected:

@@ -21,6 +21,7 @@ std::vector<bool> asking(const RealGraph& graph, const std::vector<bool>& fields
     if (node.op == RealOp::input) {
       const RealSource source = node.input.source;
       any = source == RealSource::position || source == RealSource::noise ||
+            source == RealSource::own_region || source == RealSource::other_region ||
             ((source == RealSource::own_field || source == RealSource::other_field) &&
              fields[node.input.index]);
     }

@@ -210,7 +210,7 @@ std::shared_ptr<const PairLaw> read_law_table(const ConfigTable& table, PackingC
       packing->fcc.pitch = placed(table, [&] { return relaxed_pitch(*law, guess); });
   } else if (kind == "rule") {
     table.at("file");
-    law = read_program_rule(table, packing, [&] {
+    law = read_program_rule(table, packing, {}, [&] {
             table.fail("a pair's law is a rule with 'core'", "without 'core' a rule is one of any force");
           }).law;
     if (packing != nullptr) relax_pitch(table, *law, *packing);

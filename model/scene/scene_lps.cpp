@@ -92,20 +92,6 @@ void read_sums(const ConfigTable& table, LpsMaterial& m) {
   m.corrected = table.boolean_or("surface_correction", false);
 }
 
-std::vector<Slit> read_slits(const ConfigTable& table) {
-  std::vector<Slit> slits;
-  for (const ConfigTable& one : table.tables("slit")) {
-    one.record_as("rule");
-    Slit slit{one.at("corner").vector(quantity::length), one.at("along").vector(quantity::length),
-              one.at("across").vector(quantity::length)};
-    if (slit.along.cross(slit.across).norm() <= 1e-9 * slit.along.norm() * slit.across.norm())
-      one.fail("'along' and 'across' of a slit span no plane");
-    one.done();
-    slits.push_back(slit);
-  }
-  return slits;
-}
-
 std::vector<char> read_unbreakable(const ConfigTable& table, const Regions& regions, const Scene& scene,
                                    bool breaks) {
   const auto names = table.find("unbreakable");

@@ -17,6 +17,7 @@
 #include "model/body/packing.h"
 #include "model/body/regions.h"
 #include "model/config/config.h"
+#include "model/rules/reference_bonds.h"
 #include "model/scene/scene.h"
 
 namespace cuboct {
@@ -108,10 +109,12 @@ std::optional<RuleChoice> read_rule(const ConfigTable& root, PackingChoice* pack
 // Its kinds.
 RuleChoice read_lps_rule(const ConfigTable& table, const PackingChoice* packing);
 RuleChoice read_tersoff_rule(const ConfigTable& table, CrystalChoice* crystal);
+// Its list `slit`, which bonds of the body as packed do not pass.
+std::vector<Slit> read_slits(const ConfigTable& rule);
 // A rule as text: the path of its file, or a table that has its parts. `no_law` fails where it may be none
-// but a pair law, and is not one.
+// but a pair law, and is not one. `regions`: their names, which starts may use.
 RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing,
-                             const std::function<void()>& no_law);
+                             const std::vector<std::string>& regions, const std::function<void()>& no_law);
 // What no rule of rounds can do.
 void check_rounds_body(const ConfigTable& root, const Scene& scene);
 

@@ -73,7 +73,7 @@ void read_field(const ConfigTable& table, const Scene& scene, Probe& probe) {
 void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
   if (scene.rule.rounds != nullptr)
     table.at("kind").fail("a crack probe counts the bonds of a pair law, and [rule] has none",
-                          "the counters mean_damage and largest_damage of a run tell what broke");
+                          "a probe of kind \"field\" follows the 'damage' of a rule whose bonds break");
   if (probe.set.ids.size() < 2) table.at("region").fail("a crack needs bonds: two particles or more");
   probe.bond_length = table.number_or("bond_length", quantity::length, first_shell(scene), Range::positive());
   if (const auto start = table.find("start")) probe.start = start->number(quantity::length);

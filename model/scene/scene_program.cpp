@@ -8,6 +8,7 @@
 
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
+#include "model/base/hash.h"
 #include "model/config/file_kind.h"
 #include "model/program/formula_law.h"
 #include "model/program/program_rule.h"
@@ -338,6 +339,17 @@ void set_starts(const ConfigTable& rule, RuleText& text) {
   }
 }
 
+// The scene's own meaning of the file's names.
+void set_lets(const ConfigTable& rule, RuleText& text) {
+  const auto own = names_at(rule, "let");
+  if (!own) return;
+  for (const std::string& name : own->names()) {
+    const auto at = text.lets.find(name);
+    if (at == text.lets.end()) own->at(name).fail(fmt::format("the rule has no [let] name '{}'", name));
+    at->second = formula_of(own->at(name));
+  }
+}
+
 RuleText text_of_file(const ConfigValue& file, PotentialKeys& potential) {
   const std::string path = file.file(), text = read_config_text(path);
   return read_kind(FileKind::rule, text, path, [&](const ConfigTable& root) {
@@ -352,16 +364,35 @@ RuleText text_of_file(const ConfigValue& file, PotentialKeys& potential) {
   });
 }
 
-RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const PackingChoice* packing,
-                  const std::function<void()>& no_law) {
-  if (!text.core) no_law();
-  const RuleProgram program = understood(text, {.pitch = packing != nullptr ? packing->fcc.pitch : 0});
+// The regions that starts name, as shapes: a start is worked out for the places that a body has as packed.
+void place_regions(const Regions& regions, const Scene& scene, RuleProgram& program) {
+  const double tolerance = 1e-6 * program.reach;
+  program.regions.resize(regions.names().size());
+  for (const uint32_t k : regions_of_starts(program)) {
+    Hash hash;
+    const std::vector<uint32_t> ids = regions.select(k, scene.packing().x, tolerance);
+    for (const uint32_t id : ids) hash.add(id);
+    program.settings.push_back({"region " + regions.names()[k],
+                                fmt::format("{} particles ({:016x})", ids.size(), hash.value()),
+                                "named by starts"});
+    program.regions[k] = [shape = regions.shape(k), tolerance](const Vec3& x) {
+      return shape->distance(x) <= tolerance;
+    };
+  }
+}
+
+RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const ProgramPlace& place,
+                  std::vector<Slit> slits) {
+  RuleProgram program = understood(text, place);
+  program.slits = std::move(slits);
+  for (const Slit& slit : program.slits) program.settings.push_back({"slit", slit.told(), ""});
   if (text.core)
     return {program.reach, nullptr, formula_law(text, std::make_shared<const RuleProgram>(program))};
   return {program.reach,
-          [program, potential](const ConfigTable& root, const Regions&, const Scene& scene) {
+          [program, potential](const ConfigTable& root, const Regions& regions, const Scene& scene) {
             check_rounds_body(root, scene);
             RuleProgram whole = program;
+            place_regions(regions, scene, whole);
             whole.element = potential.codes(scene);
             if (!whole.element.empty())
               whole.settings.push_back({"elements", potential.told(), "by material"});
@@ -373,14 +404,24 @@ RuleChoice chosen(const RuleText& text, const PotentialKeys& potential, const Pa
 }  // namespace
 
 RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packing,
-                             const std::function<void()>& no_law) {
+                             const std::vector<std::string>& regions, const std::function<void()>& no_law) {
   PotentialKeys potential;
-  const auto with_tables = [&](RuleText text) {
+  const ProgramPlace place{.pitch = packing != nullptr ? packing->fcc.pitch : 0, .regions = regions};
+  const auto with_tables = [&](RuleText text, std::vector<Slit> slits = {}) {
     text.potential = potential.tables();
-    return chosen(text, potential, packing, no_law);
+    return chosen(text, potential, place, std::move(slits));
+  };
+  const auto placed = [&](RuleText text, const ConfigTable& table) {
+    if (!text.core) no_law();
+    std::vector<Slit> slits = text.core ? std::vector<Slit>() : read_slits(table);
+    if (!slits.empty() && text.range == BondRange::current)
+      table.at("slit").fail("bonds of the moment know no slit", "bonds = \"reference\"");
+    table.done();
+    return with_tables(std::move(text), std::move(slits));
   };
   if (!rule.is_table()) {
     RuleText text = text_of_file(rule, potential);
+    if (!text.core) no_law();
     return with_tables(std::move(text));
   }
   const ConfigTable table = rule.table();
@@ -389,13 +430,12 @@ RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packi
     potential.read(table);
     set_parameters(table, text);
     set_starts(table, text);
-    table.done();
-    return with_tables(std::move(text));
+    set_lets(table, text);
+    return placed(std::move(text), table);
   }
   RuleText text = rule_text(table);
   potential.read(table);
-  table.done();
-  return with_tables(std::move(text));
+  return placed(std::move(text), table);
 }
 
 }  // namespace cuboct

@@ -56,7 +56,9 @@ std::optional<RuleChoice> read_rule(const ConfigTable& root, PackingChoice* pack
       crystal->table.fail("a crystal of atoms serves kind = \"tersoff\" alone",
                           "[packing] has the particles of other rules");
     if (table && !table->has("file") && !table->has("reach")) table->at("kind");
-    return pair_law_or_rounds(*value, read_program_rule(*value, packing, no_law), packing);
+    const auto regions = root.table_at("regions");
+    const std::vector<std::string> names = regions ? regions->names() : std::vector<std::string>();
+    return pair_law_or_rounds(*value, read_program_rule(*value, packing, names, no_law), packing);
   }
   no_law();
   const ConfigValue kind = table->at("kind");

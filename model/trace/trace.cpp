@@ -383,9 +383,8 @@ void write_cycles(const Writer& out, const Trace& trace) {
   for (int p = 0; p < phases_of(trace.rounds); ++p) names += ' ' + phase_name(p, trace.rounds);
   if (trace.cycles.size() % row != 0)
     throw std::logic_error("a trace's cycles are not steps x nodes x phases");
-  out.array(
-      out.root(), "cycles", {trace.cycles.size() / row, row / phases, phases, 2}, flat, "cycle",
-      "[step][node][phase][start, end]; phases:" + names);
+  out.array(out.root(), "cycles", {trace.cycles.size() / row, row / phases, phases, 2}, flat, "cycle",
+            "[step][node][phase][start, end]; phases:" + names);
 }
 
 }  // namespace

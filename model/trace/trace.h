@@ -108,7 +108,7 @@ struct Trace {
   // BondState::kept after the last of `bodies`; nothing where bonds are not those of the body as packed.
   std::optional<std::vector<uint64_t>> bonds;
   std::vector<Curve> curves;
-  int rounds = 1;             // of the rule, where an engine counts cycles
+  int rounds = 1;  // of the rule, where an engine counts cycles
   // [(step * nodes + node) * phases() + phase]; empty where the engine counts none
   std::vector<PhaseSpan> cycles;
   std::optional<StopReason> stop;  // the run had to stop: after the last complete step

@@ -45,7 +45,8 @@ module cuboct_least_fault #(
     if (n >= Sources) begin : gen_pipe
       localparam int S = n - Sources;
       assign some = valid_i[S];
-      assign key  = {code_i[S*CodeBits +: CodeBits], id_i[S*IdBits +: IdBits], !number_i[S*64+63], number_i[S*64 +: NumberBits-1]};
+      assign key  = {code_i[S*CodeBits +: CodeBits], id_i[S*IdBits +: IdBits], !number_i[S*64+63],
+                     number_i[S*64 +: NumberBits-1]};
     end else begin : gen_lesser
       logic upper;
       assign some  = late_q[2*n] || late_q[2*n+1];

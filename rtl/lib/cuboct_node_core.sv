@@ -152,8 +152,8 @@ module cuboct_node_core #(
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_sequencer (
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
-    .round_o(in_round), .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
-    .onehot_o(axis_onehot),
+    .round_o(in_round), .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump),
+    .axis_o(axis), .onehot_o(axis_onehot),
     .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
   );
 
@@ -573,7 +573,8 @@ module cuboct_node_core #(
         .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
       ) u_finder (
         .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_over), .own_count_i(own_count_q), .complete_i(complete),
-        .came_i(came), .again_i(1'b0), .counts_i('0), .read_o(stream_read[s]), .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
+        .came_i(came), .again_i(1'b0), .counts_i('0), .read_o(stream_read[s]), .slot_o(own_slot),
+        .addr_o(stream_addr[s*AddrBits +: AddrBits]),
         .own_i(own_candidate), .halos_i(halos), .row_o(row[s*RowBits +: RowBits]),
         .row_data_i(row_data[s*FilterLanes*Axes*FilterFrac +: FilterLanes*Axes*FilterFrac]),
         .candidate_o(issue_candidate[s*CandidateBits +: CandidateBits]), .issue_o(issue[s*Pipes +: Pipes]),

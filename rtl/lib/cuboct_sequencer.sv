@@ -3,7 +3,7 @@
 module cuboct_sequencer #(
   parameter int Axes    = 3,  // 2 or 3; with 2 the machine has neither EXCHANGE_Z nor MIGRATE_Z
   parameter int Overlap = 1, // 1: the force engine starts with the exchange, 0: with FORCE
-  parameter int Rounds  = 1, // of the rule, >= 1: each exchanges, meets and updates; the last one is followed by MIGRATE
+  parameter int Rounds  = 1, // of the rule, >= 1: each exchanges, meets and updates; MIGRATE follows the last one
   localparam int RoundPhases = 5 * Rounds,  // before the migrations
   localparam int Phases      = RoundPhases + 3
 ) (

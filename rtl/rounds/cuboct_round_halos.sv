@@ -39,14 +39,14 @@ module cuboct_round_halos #(
   input  logic [Rounds*(Faces-2)-1:0] relay_clear_i, // with relay_read_i, by round, face: the answer becomes 0
   input  logic [Rounds*AddrBits-1:0] relay_addr_i,   // with relay_read_i
   output logic [Rounds*MostBits-1:0] relay_data_o,   // by round: of the face picked, from the next cycle on
-  // Migrating particles: as cuboct_halos.
-  input  logic                       migrating_i,
-  input  logic [Faces-1:0]           migrate_clear_i,
-  output logic [Faces-1:0]           migrate_empty_o,
-  output logic [Faces-1:0]           migrate_some_next_o,
-  output logic [Faces-1:0]           migrate_over_next_o,
-  output logic [Faces*ParticleBits-1:0] migrate_data_o,
-  input  logic [Faces-1:0]           migrate_pop_i
+  // Migrating particles.
+  input  logic                       migrating_i,    // a migration phase
+  input  logic [Faces-1:0]           migrate_clear_i,  // by face: last cycle of its axis's migration
+  output logic [Faces-1:0]           migrate_empty_o,  // by face: no particle waits
+  output logic [Faces-1:0]           migrate_some_next_o,  // in the next cycle one waits;
+  output logic [Faces-1:0]           migrate_over_next_o,  // none does and the stream is complete, if it is not cleared
+  output logic [Faces*ParticleBits-1:0] migrate_data_o,  // by face: the oldest particle
+  input  logic [Faces-1:0]           migrate_pop_i   // by face: it is taken
 );
   localparam int RestBits = HaloBits - Axes * PositionFrac - 2 * (Axes - 1);
   localparam int CandPos  = Axes * (PositionFrac + 2);

@@ -55,10 +55,7 @@ CrackBody::CrackBody(const Grid& grid, const Kernel& kernel, const Breaking& bre
 const std::vector<Vec3>& CrackBody::force(const std::vector<Vec3>& u, bool keeps) {
   for (size_t i = 0; i < u.size(); ++i) x_[i] = home_[i] + u[i];
   terms_->begin(x_);
-  for (const size_t round : {0, 1}) {
-    terms_->pair(round, 0, u.size(), keeps);
-    terms_->finish(round, 0, u.size());
-  }
+  run_rounds(*terms_, 2, u.size(), keeps);
   for (size_t i = 0; i < u.size(); ++i) force_[i] = terms_->force()[i] / grid_.volume();
   return force_;
 }

@@ -167,8 +167,7 @@ std::vector<std::optional<MachineCounts>> count_machines(const SharedSetup& shar
                                                          const std::vector<Plan>& plans, uint64_t steps) {
   const State& initial = shared.initial();
   std::vector<std::unique_ptr<Counted>> counted;
-  for (const Plan& plan : plans)
-    counted.push_back(std::make_unique<Counted>(plan, spans_of_step(plan)));
+  for (const Plan& plan : plans) counted.push_back(std::make_unique<Counted>(plan, spans_of_step(plan)));
   std::vector<MachineEvents> kicks(shared.plan().nodes());
   try {
     emu::LatticeOptions options;

@@ -127,7 +127,8 @@ struct Shipped {
   Scene scene;
   Plan plan;
 };
-constexpr const char* kShipped[] = {"copper", "dpd", "glass", "heat", "langevin", "plastic"};
+constexpr const char* kShipped[] = {"../cracked_glass", "copper", "dpd", "glass", "heat",
+                                    "langevin",         "plastic"};
 
 bool has_avx2() {
 #if defined(__x86_64__)

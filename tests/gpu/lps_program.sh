@@ -13,7 +13,7 @@ fail() {
   exit 1
 }
 code=0
-"$program" lps scenes/cracked_glass.toml --repeats 1 --no-energy --rows 4 --compare 20 --points "$scratch/points" \
+"$program" lps tests/gpu/lps/cracked_glass.toml --repeats 1 --no-energy --rows 4 --compare 20 --points "$scratch/points" \
   >"$scratch/out" 2>"$scratch/err" || code=$?
 if grep -q '^no GPU: ' "$scratch/err"; then
   echo "skipped: $(cat "$scratch/err")"
@@ -46,6 +46,6 @@ refuses() {  # text, arguments
 }
 refuses 'scenes/coupon.toml: its rule has pairs alone' scenes/coupon.toml
 refuses 'scenes/none.toml' scenes/none.toml
-refuses '--device: there is no CUDA device 99' scenes/cracked_glass.toml --device 99
-refuses '--precision' scenes/cracked_glass.toml --precision half
+refuses '--device: there is no CUDA device 99' tests/gpu/lps/cracked_glass.toml --device 99
+refuses '--precision' tests/gpu/lps/cracked_glass.toml --precision half
 echo "floats and doubles beside the reference, cracks in both, four refusals"

@@ -4,7 +4,7 @@
 # usage: columns.sh ROOT; prints each longer line and fails if there is one.
 set -euo pipefail
 cd "$1"
-find rtl/lib rtl/lattice rtl/pipeline rtl/board rtl/bus tests/formal \( -name '*.sv' -o -name '*.svh' \) -print0 | sort -z | xargs -0 awk '
+find rtl/lib rtl/lattice rtl/pipeline rtl/rounds rtl/board rtl/bus tests/formal \( -name '*.sv' -o -name '*.svh' \) -print0 | sort -z | xargs -0 awk '
   length > 120 { printf "%s:%d: %d columns, more than 120\n", FILENAME, FNR, length; bad = 1 }
   END {
     if (NR < 1000) { printf "only %d lines found: the check sees nothing\n", NR; bad = 1 }

@@ -41,7 +41,7 @@ TEST(WaveOperator, IsTheOperatorOfTheEngine) {
   std::vector<Vec3> x = body.x;
   for (Vec3& at : x) u.emplace_back(normal(random), normal(random), 0), at += u.back();
   terms->begin(x);
-  for (const size_t round : {0, 1}) terms->pair(round, 0, x.size(), true), terms->finish(round, 0, x.size());
+  run_rounds(*terms, 2, x.size(), true);
   const auto force = symbol.waves_of(terms->force()), moved = symbol.waves_of(u);
   const WaveOperator::Parts parts = symbol.parts(symbol.kappa(symbol.kernel_at(kernel.alpha, kernel.D)));
   double size = 0, off = 0;

@@ -31,6 +31,7 @@ scenes/accuracy/vibration scenes/failures/constraint_work scenes/failures/creep 
 scenes/failures/force_jump scenes/failures/full_node scenes/failures/heating scenes/failures/order_of_sums scenes/failures/resolution
 scenes/failures/stiff_hold scenes/failures/time_step scenes/failures/tunnelling scenes/failures/velocity scenes/studies/pitch_bar
 scenes/studies/fit_bar_scene scenes/studies/ringing_block scenes/validation/crystal tests/synth/lone tests/synth/sheet tests/board/thrown
+tests/gpu/lps/cracked_glass
 """.split()
 ARCHS = """scenes/archs/board scenes/archs/default scenes/archs/ecp5 scenes/archs/everything scenes/archs/ice40_serial scenes/archs/icebreaker
 scenes/archs/small scenes/archs/solid tests/board/one_node tests/synth/narrow tests/study/formats""".split()
@@ -79,7 +80,8 @@ class Kinds:
     def scene(self, rng):
         names = [name + ".toml" for name in SCENES]
         name = rng.choice(names)
-        files = {"in/silicon.tersoff": self.source("scenes/studies/silicon.tersoff")}
+        files = {"in/silicon.tersoff": self.source("scenes/studies/silicon.tersoff"),
+                 "in/rules/texts/glass.toml": self.source("scenes/rules/texts/glass.toml")}
         return self.toml(rng, self.source(name), [self.source(n) for n in names], files, "in/scene.toml", chosen(rng, SCENE_COMMANDS))
 
     def arch(self, rng):

@@ -58,10 +58,7 @@ void write(const Body& body, int side, const std::string& path) {
 
 void evaluate(RoundsTerms& terms, const Body& body) {
   terms.begin(body.x);
-  for (size_t round = 0; round < 2; ++round) {
-    terms.pair(round, 0, body.size(), true);
-    terms.finish(round, 0, body.size());
-  }
+  run_rounds(terms, 2, body.size(), true);
 }
 
 void kick(const RoundsTerms& terms, Body& body) {

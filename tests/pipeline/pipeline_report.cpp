@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
     return std::fputs("usage: pipeline_report rules|laws DIR [NAME...]\n", stderr), 2;
   std::vector<std::string> names(argv + 3, argv + argc);
   if (names.empty())
-    names = kind == "rules" ? std::vector<std::string>{"heat", "copper", "glass", "dpd"}
+    names = kind == "rules" ? std::vector<std::string>{"heat", "copper", "glass"}
                             : std::vector<std::string>{"undamped_block", "lj_block", "coupon"};
   try {
     kind == "rules" ? print_rules(argv[2], names) : print_laws(argv[2], names);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -81,7 +82,7 @@ std::string print_top(const std::vector<Pipeline>& pipelines) {
 
 class Model {
  public:
-  explicit Model(const std::vector<Pipeline>& pipelines) {
+  Model(const std::vector<Pipeline>& pipelines, Form form) {
     emu::Build build;
     build.top = "cuboct_pipelines", build.verilator_flags = "--cc -Wno-WIDTH", build.compiler_flags = "-O0";
     for (const auto& [name, text] : emu::shim_sources())
@@ -102,6 +103,7 @@ class Model {
              pipeline::print_unchecked(p.name, p.graph, p.outputs, p.schedule))
           add(module.name, module.text);
       add("cuboct_pipelines", print_top(pipelines));
+      if (form == Form::gates) list = gates(dir, list);
       write_text((fs::path(dir) / "files.f").string(), list);
     };
     library_ = dlopen(emu::compile(build, CUBOCT_TEST_CACHE).c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -120,6 +122,16 @@ class Model {
   }
 
  private:
+  // The list of the netlist's one file. What it was made of goes.
+  static std::string gates(const std::string& dir, std::string files) {
+    std::ranges::replace(files, '\n', ' ');
+    const std::string command = fmt::format(
+        "cd '{}' && yosys -q -p 'read_verilog -sv {}; synth -flatten -top cuboct_pipelines; "
+        "write_verilog -noattr gates.v' && rm -r rtl && mkdir rtl && mv gates.v rtl",
+        dir, files);
+    if (std::system(command.c_str()) != 0) throw std::runtime_error("yosys failed");
+    return "rtl/gates.v\n";
+  }
   template <class F>
   void find(const char* name, F& function) {
     function = reinterpret_cast<F>(dlsym(library_, name));
@@ -256,8 +268,8 @@ Pipeline finish_of(const std::string& name, const graph::FixedProgram& program, 
 }
 
 Compared compare(const std::vector<Pipeline>& pipelines, size_t sets, uint64_t seed,
-                 std::vector<Difference>& differences) {
-  Model model(pipelines);
+                 std::vector<Difference>& differences, Form form) {
+  Model model(pipelines, form);
   Dice dice(seed);
   const std::vector<Lanes> lanes = lanes_of(pipelines);
   std::vector<Expected> expected;

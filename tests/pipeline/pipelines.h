@@ -37,9 +37,11 @@ struct Difference {
   std::string what;  // empty: none
 };
 
-// Compiles them as one model, and drives each with so many sets of inputs. Each difference is told once for
-// each pipeline, in their order.
+enum class Form : uint8_t { printed, gates };  // as printed; the gates that yosys makes of it
+
+// Compiles them as one model, and drives each with so many sets of inputs. Each pipeline has a difference,
+// the first, in their order.
 Compared compare(const std::vector<Pipeline>& pipelines, size_t sets, uint64_t seed,
-                 std::vector<Difference>& differences);
+                 std::vector<Difference>& differences, Form form = Form::printed);
 
 }  // namespace cuboct::test

@@ -172,6 +172,16 @@ TEST(PrintedPipelineMore, OfAStepTakenTooSoonIsSeen) {
   EXPECT_GE(kinds.size(), 12u);
 }
 
+TEST(PrintedPipelineMore, OfGatesIsTheInterpreter) {
+  std::vector<Pipeline> all{of_many_kinds()};
+  add_program(all, "heat", shipped_rule("heat").program.program);
+  std::vector<Difference> differences;
+  const Compared compared = compare(all, 300, 3, differences, Form::gates);
+  for (const Difference& difference : differences) EXPECT_EQ(difference.what, "");
+  EXPECT_EQ(compared.sets, 300 * all.size());
+  EXPECT_GT(compared.faults, 20u);
+}
+
 // Without a warning.
 void expect_read_by_all_tools(const std::string& rule) {
   namespace fs = std::filesystem;

@@ -27,7 +27,7 @@ const std::string kPlateText =
     "\"y\"\nregion "
     "= \"bottom\"\n"
     "[rule]\nfile = \"texts/glass.toml\"\n"
-    "parameters = { youngs_modulus = \"72 GPa\", critical_stretch = 0.00091 }\n"
+    "parameters.youngs_modulus = \"72 GPa\"\nlet.critical_stretch = 0.00091\n"
     "start.whole = \"not ((x_i.y - 0.1 mm) * (x_i.y + d0.y - 0.1 mm) < 0 and x_i.x + d0.x / 2 < 3 mm)\"\n"
     "start.hard = \"abs(x_i.y) > 1.9 mm or abs(x_i.y + d0.y) > 1.9 mm\"\n";
 
@@ -78,6 +78,7 @@ TEST(IntegerBonds, ACrackIsThatOfDoubles) {
   // 3e-11 m, the dilatation by 1e-8; and waves carry it on for 400 steps.
   EXPECT_LT(off, 3e-9);
   const std::vector<double> here = golden.damage(), there = doubles.damage();
+  EXPECT_EQ(std::get<RealFrame>(golden.frame(false)).shown.back(), here);
   EXPECT_EQ(here, there);
   EXPECT_GT(std::accumulate(here.begin(), here.end(), 0.0), 8);
 }

@@ -37,10 +37,7 @@ class LpsBody {
 
   const std::vector<Vec3>& forces(const std::vector<Vec3>& x, bool keeps = false) {
     terms_->begin(x);
-    for (size_t round = 0; round < 2; ++round) {
-      terms_->pair(round, 0, size_, keeps);
-      terms_->finish(round, 0, size_);
-    }
+    run_rounds(*terms_, 2, size_, keeps);
     return terms_->force();
   }
   const RoundsTerms& terms() const { return *terms_; }

@@ -102,15 +102,15 @@ TEST(Lps, DamageIsSmoothAndNeverHeals) {
     return x;
   };
   lps.forces(stretched(0.1), false);
-  EXPECT_EQ(lps.terms().damage(21), 0);  // looked at, not stepped
+  EXPECT_EQ(lps.terms().damage()[21], 0);  // looked at, not stepped
   lps.forces(stretched(0.1), true);
-  EXPECT_NEAR(lps.terms().damage(21), 0.5, 1e-9);
+  EXPECT_NEAR(lps.terms().damage()[21], 0.5, 1e-9);
   lps.forces(stretched(0.0), true);
-  EXPECT_NEAR(lps.terms().damage(21), 0.5, 1e-9);
+  EXPECT_NEAR(lps.terms().damage()[21], 0.5, 1e-9);
   lps.forces(stretched(0.11), true);
-  EXPECT_NEAR(lps.terms().damage(21), (1 + std::tanh(1.0)) / 2, 1e-9);
+  EXPECT_NEAR(lps.terms().damage()[21], (1 + std::tanh(1.0)) / 2, 1e-9);
   lps.forces(stretched(0.5), true);
-  EXPECT_EQ(lps.terms().damage(21), 1);
+  EXPECT_EQ(lps.terms().damage()[21], 1);
   for (const Vec3& f : lps.forces(stretched(0.2))) EXPECT_EQ(f, Vec3(Vec3::Zero()));
 }
 
@@ -129,8 +129,8 @@ TEST(Lps, BondsKeepTheirDamageThroughACheckpoint) {
   EXPECT_EQ(other->memory(), first.terms().memory());
   double damaged = 0;
   for (size_t i = 0; i < body.size(); ++i) {
-    EXPECT_EQ(other->damage(i), first.terms().damage(i));
-    damaged += other->damage(i);
+    EXPECT_EQ(other->damage()[i], first.terms().damage()[i]);
+    damaged += other->damage()[i];
   }
   EXPECT_GT(damaged, 1);
 }

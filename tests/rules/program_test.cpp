@@ -89,12 +89,24 @@ std::string struck_block(const std::string& rule) {
          rule;
 }
 
-// The rule of scenes/rules/texts/glass.toml is that of [rule] kind = "lps", written by hand in C++.
+// Grips, and a slit that ends within the block.
+const std::string kGripped =
+    "[[rule.slit]]\ncorner = \"[-1, 2.1, -1] mm\"\nalong = \"[4, 0, 0] mm\"\nacross = \"[0, 0, 9] mm\"\n"
+    "[regions]\ntop = { shape = \"half_space\", point = \"[0, 7, 0] mm\", normal = \"-y\" }\n"
+    "bottom = { shape = \"half_space\", point = \"[0, 1, 0] mm\", normal = \"y\" }\n";
+const std::string kTextOfGlass =
+    "[rule]\nfile = \"texts/glass.toml\"\nparameters.fracture_energy = \"400 J/m^2\"\n";
+const std::string kHard =
+    "start.hard = \"inside_i(top) or inside_j(top) or inside_i(bottom) or inside_j(bottom)\"\n";
+
+// The rule of scenes/rules/texts/glass.toml is that of [rule] kind = "lps", written by hand in C++: its
+// critical stretch, its grips and its slit too.
 TEST(Program, GlassIsThePeridynamicSolid) {
-  const Scene text = scene_of_text(struck_block("[rule]\nfile = \"texts/glass.toml\"\n"));
+  const Scene text = scene_of_text(struck_block(kTextOfGlass + kHard + kGripped));
   const Scene own = scene_of_text(
       struck_block("[rule]\nkind = \"lps\"\nyoungs_modulus = \"70 GPa\"\npoissons_ratio = 0.22\n"
-                   "horizon = \"1.51 mm\"\ncritical_stretch = 0.002\n"));
+                   "fracture_energy = \"400 J/m^2\"\nunbreakable = [\"top\", \"bottom\"]\n" +
+                   kGripped));
   RoundsRun a(text, text.body, {}, 1e-3), b(own, own.body, {}, 1e-3);
   Asked asked;
   asked.energies = true;
@@ -115,6 +127,49 @@ TEST(Program, GlassIsThePeridynamicSolid) {
   double broken = 0;
   for (const double damage : a.damage()) broken += damage;
   EXPECT_GT(broken, 1) << "no bond broke: the test does not see what breaking does";
+  // Grips and slit change what breaks.
+  for (const std::string& without : {kHard, kGripped.substr(0, kGripped.find("[regions]"))}) {
+    std::string rule = kTextOfGlass + kHard + kGripped;
+    rule.erase(rule.find(without), without.size());
+    const Scene other = scene_of_text(struck_block(rule));
+    RoundsRun c(other, other.body, {}, 1e-3);
+    c.advance(60, nullptr);
+    EXPECT_NE(c.damage(), a.damage()) << without;
+  }
+}
+
+double stiffness_of(const std::string& rule) {
+  return scene_of_text(struck_block(rule)).rule.rounds->stiffness();
+}
+
+// The largest frequency of the text is a formula; that of kind "lps" is the largest on a grid of wave
+// vectors, which lies some percent below the largest there is. Beyond a ratio of 0.4 the formula is the chord
+// of a convex function, and up to a sixth above it.
+TEST(Program, TheStiffnessOfGlassIsThatOfItsFastestWave) {
+  for (const double ratio : {-0.4, 0.0, 0.22, 0.3, 0.4, 0.43, 0.46, 0.49}) {
+    const double text = stiffness_of(
+        fmt::format("[rule]\nfile = \"texts/glass.toml\"\nparameters.poissons_ratio = {}\n", ratio));
+    const double own = stiffness_of(
+        fmt::format("[rule]\nkind = \"lps\"\nyoungs_modulus = \"70 GPa\"\npoissons_ratio = {}\n", ratio));
+    EXPECT_GT(text, own) << ratio;
+    EXPECT_LT(text, own * (ratio > 0.4 ? 1.18 : 1.02)) << ratio;
+  }
+}
+
+// Of an engine of doubles; tests/rules/integer_bonds_test.cpp has the same of integers.
+TEST(Program, FramesAndProbesHaveTheDamage) {
+  const Scene scene = scene_of_text(struck_block(
+      "probe = [ { name = \"torn\", kind = \"field\", field = \"damage\", region = { shape = \"half_space\", "
+      "point = \"[0, 0, 0] mm\", normal = \"-z\" } } ]\n" +
+      kTextOfGlass));
+  RoundsRun run(scene, scene.body, {}, 1e-3);
+  run.advance(60, nullptr);
+  const std::vector<double> damage = field_in(run, 1);
+  EXPECT_EQ(damage, run.damage());
+  EXPECT_EQ(run.shown().back().first, "damage");
+  EXPECT_EQ(scene.probes.at(0).field_at, 1u);
+  EXPECT_GT(*std::ranges::max_element(damage), 0.2);
+  EXPECT_LT(*std::ranges::min_element(damage), 0.2);
 }
 
 // One bond of two particles, pulled and pushed: its force is that of a spring in series with a slider.
@@ -230,6 +285,16 @@ TEST(Program, WhatCannotBeIsRefusedAtItsPlace) {
   of_file("parameters.colour = 3\n", "s.toml:8:21: the rule has no parameter 'colour'");
   of_file("parameters.conductivity = \"3 m\"\n", "'conductivity' must be");
   of_file("start.U = 3\n", "the rule has no field 'U'");
+  of_file("let.U = 3\n", "s.toml:8:9: the rule has no [let] name 'U'");
+  of_file("start.T = \"select(inside(tip), 1 K, 2 K)\"\n[regions]\ntop = { shape = \"sphere\" }\n",
+          "unknown region 'tip'");
+  of_file("start.T = \"select(inside(1), 1 K, 2 K)\"\n", "'inside' takes the name of a region");
+  of_file("start.T = \"select(inside_i(top), 1 K, 2 K)\"\n", "'inside_i' is not known here");
+  of_file(kGripped.substr(0, kGripped.find("[regions]")), "bonds of the moment know no slit");
+  const std::string nowhere =
+      "[rule.start]\nT = \"select(inside(far), 1 K, 2 K)\"\n[regions]\nfar = { shape = "
+      "\"sphere\", centre = \"[9, 9, 9] m\", radius = \"1 mm\" }\n";
+  of_file(nowhere, "s.toml:11:7: no particle lies in this region");
   EXPECT_NE(text_refusal(heat_bar("rule = \"texts/none.toml\"\n")).find("no file 'texts/none.toml'"),
             std::string::npos);
 }

@@ -85,10 +85,7 @@ TEST(Shown, FramesHaveWhatTheRuleShowsOfTheirState) {
   const auto terms = rounds->bind(scene.rule, scene.packing(), scene.periodic, 1);
   recall_bonds(*terms, *run.saved_body());
   terms->begin(frame.x);
-  for (size_t round = 0; round < 2; ++round) {
-    terms->pair(round, 0, frame.x.size(), false);
-    terms->finish(round, 0, frame.x.size());
-  }
+  run_rounds(*terms, 2, frame.x.size(), false);
   EXPECT_EQ(frame.shown, terms->shown());
   EXPECT_GT(*std::max_element(frame.shown[1].begin(), frame.shown[1].end()), 0);
 }

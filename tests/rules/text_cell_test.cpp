@@ -171,6 +171,10 @@ TEST(TextCell, SaysWhatHasNone) {
                  "the start of 'whole' asks where it is, and a cell of the matter is anywhere");
   expect_no_cell(matter_of(glass + "start.hard = \"noise(1) < 0\"\n"),
                  "the start of 'hard' asks where it is, and a cell of the matter is anywhere");
+  expect_no_cell(
+      matter_of(glass + "start.hard = \"inside_j(all)\"\n[regions]\nall = { shape = \"half_space\", point "
+                        "= \"[9, 0, 0] m\", normal = \"x\" }\n"),
+      "the start of 'hard' asks where it is, and a cell of the matter is anywhere");
   refuse_cell(matter_of(glass).rule);
   EXPECT_EQ(starts_by_place(matter_of(glass + "start.whole = \"x_i.x < 1 mm\"\n").rule),
             std::vector<std::string>{"whole"});

@@ -243,6 +243,9 @@ class Printer {
         return "at.made()";
       case RealSource::noise:
         return fmt::format("at.noise({}, at.id[i], at.id[other]) * {}", k, literal(graph::kNoiseUnit, 0));
+      case RealSource::own_region:
+      case RealSource::other_region:  // of starts, which the host works out
+        break;
       case RealSource::packed:
       case RealSource::time_step:
         break;

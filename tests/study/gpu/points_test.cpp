@@ -161,7 +161,7 @@ TEST(GpuPoints, RulesOfTextAreThoseOfTheOtherEngines) {
 TEST(GpuPoints, OtherRulesOfRoundsAreRefused) {
   Settings settings;
   settings.engine = "gpu";
-  const Base base = read_base(CUBOCT_SOURCE_DIR "/scenes/cracked_glass.toml", "");
+  const Base base = read_base(CUBOCT_SOURCE_DIR "/tests/gpu/lps/cracked_glass.toml", "");
   const std::string error = refused_with([&] { resolve(base, settings); });
   EXPECT_NE(error.find("and the gpu engine knows the pair law alone"), std::string::npos) << error;
 }

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// Rules of text as emitted hardware, Verilated: golden's bits, order and faults, the native node's cycles.
+#include <gtest/gtest.h>
+
+#include "emu/machine/loop_bench.h"
+#include "emu/systemc/node.h"
+#include "emu/verilated/verilated_node.h"
+#include "tests/backend/engines.h"
+#include "tests/backend/rule_cases.h"
+
+namespace cuboct::test {
+namespace {
+
+struct RuleCase {
+  const char* name;
+  std::string rule;
+  uint64_t steps;
+  bool fails;
+  int filter_lanes, force_pipes, queue_depth;
+  bool overlap;
+  int link_bits;
+  LinkCheck check = LinkCheck::none;
+};
+
+Arch arch_of(const RuleCase& c) {
+  Arch arch;
+  arch.filter_lanes = c.filter_lanes, arch.force_pipes = c.force_pipes, arch.queue_depth = c.queue_depth;
+  arch.overlap = c.overlap, arch.link_bits = c.link_bits, arch.link_check = c.check;
+  return arch;
+}
+
+class RuleRtl : public testing::TestWithParam<RuleCase> {};
+
+// Free and with links that stall.
+TEST_P(RuleRtl, HoldsGoldensBitsAndTheNativeNodesCycles) {
+  const RuleCase& p = GetParam();
+  const Case c = case_of(p.name, hot(p.rule), arch_of(p), p.steps);
+  const Plan& plan = c.setup.plan;
+  const auto rtl_nodes = emu::verilated_nodes(plan, CUBOCT_TEST_CACHE, 7, "-O1");
+  const GoldenRun golden = run_golden(c.setup, c.steps);
+  EXPECT_EQ(golden.fault.has_value(), p.fails);
+  for (const double rate : {0.0, 0.3}) {
+    const auto options = keep_all(c.steps, rate);
+    const auto rtl = run_loop_bench(plan, c.setup.initial, options, rtl_nodes, "rtl");
+    const auto native = run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain");
+    const Compared compared = compare(plan, golden, rtl);
+    EXPECT_EQ(compared.difference, "") << rate;
+    EXPECT_GT(compared.slots, 300u);
+    const Compared cycles = compare_cycles(native, rtl);
+    EXPECT_EQ(cycles.difference, "") << rate;
+    EXPECT_GT(cycles.spans,
+              plan.nodes() * static_cast<uint64_t>(phases_of(static_cast<int>(plan.rounds.size()))));
+  }
+}
+
+const auto kName = [](const testing::TestParamInfo<RuleCase>& p) { return std::string(p.param.name); };
+// Of three rounds, of little arithmetic.
+INSTANTIATE_TEST_SUITE_P(Rules, RuleRtl,
+                         testing::Values(RuleCase{"three_rounds", failing(false, false), 2, false, 3, 2, 4,
+                                                  true, 40}),
+                         kName);
+INSTANTIATE_TEST_SUITE_P(
+    More, RuleRtl,
+    testing::Values(RuleCase{"one_round", kOneRound, 6, false, 8, 1, 16, true, 0},
+                    RuleCase{"four_rounds", kFourRounds, 6, false, 3, 2, 4, true, 40},
+                    RuleCase{"checked", kFourRounds, 4, false, 1, 1, 1, false, 23, LinkCheck::retry},
+                    RuleCase{"wide", kFourRounds, 6, false, 16, 4, 8, false, 0},
+                    RuleCase{"fails", failing(true, true), 9, true, 4, 2, 8, true, 0},
+                    RuleCase{"fails_late", failing(false, true), 9, true, 4, 1, 8, true, 0}),
+    kName);
+
+}  // namespace
+}  // namespace cuboct::test
