@@ -19,7 +19,8 @@ namespace {
 constexpr const char* kGlass = R"toml(density = "2440 kg/m^3"
 [rule]
 file = "texts/glass.toml"
-parameters = { youngs_modulus = "72 GPa", poissons_ratio = 0.22, critical_stretch = 0.00091 }
+parameters = { youngs_modulus = "72 GPa", poissons_ratio = 0.22 }
+let.critical_stretch = 0.00091
 start.whole = "not ((x_i.y - 1.2 mm) * (x_i.y + d0.y - 1.2 mm) < 0 and x_i.x + d0.x / 2 < 1 mm)"
 [packing]
 pitch = "1 mm"
