@@ -63,8 +63,7 @@ TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {
   const auto nodes = emu::by_node(setup.plan, setup.initial);
   uint16_t index = 0;
   for (uint16_t n = 0; n < nodes.size(); ++n)
-    for (const emu::Loaded& p : nodes[n])
-      host.load(index++, n, p.word, setup.plan.words.particle_bits);
+    for (const emu::Loaded& p : nodes[n]) host.load(index++, n, p.word, setup.plan.words.particle_bits);
   host.run(0, 24);
   while (host.status().busy) continue;
   EXPECT_EQ(host.status().cycles, cycles_of(setup, 24));
