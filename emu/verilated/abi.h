@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The C interface of a compiled RTL library. Included by the shim, which is compiled with the Verilated
-// model, and by the engine that loads it. Words are little endian, 512 bits.
+// model, and by the engine that loads it. Words are little endian; beats have 512 bits, particles 2048.
 #ifndef CUBOCT_VERILATED_ABI_H
 #define CUBOCT_VERILATED_ABI_H
 
 #include <cstdint>
 
-enum { kCuboctAbi = 9, kCuboctFaces = 6, kCuboctWords = 8 };
+enum { kCuboctAbi = 10, kCuboctFaces = 6, kCuboctWords = 8, kCuboctParticleWords = 32 };
 
 // Inputs of one node during one cycle. `link_data[f]` is read where bit f of `link_valid` is set.
 struct CuboctIn {
@@ -31,7 +31,7 @@ struct CuboctOut {
   uint16_t link_ack[kCuboctFaces];
   uint32_t fault_id, observe_cell, fault_cell;  // the cells of a brick
   int64_t fault_number;
-  uint64_t observe_data[kCuboctWords];             // where observe_valid
+  uint64_t observe_data[kCuboctParticleWords];     // where observe_valid
   uint64_t link_data[kCuboctFaces][kCuboctWords];  // where link_valid
 };
 

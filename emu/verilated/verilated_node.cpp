@@ -19,7 +19,7 @@ void read_outputs(const CuboctOut& from, NodeOutputs& out) {
   out.phase_end = from.phase_end;
   out.idle = from.idle != 0;
   out.observe = from.observe_valid != 0;
-  static_assert(Bits::kWords == kCuboctWords && Word::kWords >= kCuboctWords);
+  static_assert(Bits::kWords == kCuboctWords && Word::kWords >= kCuboctParticleWords);
   if (out.observe) std::memcpy(out.observe_data.word.data(), from.observe_data, sizeof from.observe_data);
   out.fault = from.fault_valid != 0;
   out.fault_code = from.fault_code;
@@ -121,10 +121,7 @@ std::string VerilatedNode::doing() const {
 
 NodeFactory verilated_nodes(const Plan& plan, const std::string& build_directory, uint32_t seed,
                             const std::string& optimise) {
-  if (plan.words.bonds > 0)
-    throw InputError("the rtl engine: it holds no bonds of the body as packed yet")
-        .about({"rule.file", "rule"});
-  check_words(plan, 64 * kCuboctWords);
+  check_words(plan, 64 * kCuboctParticleWords);
   auto library = std::make_shared<const Library>(compile_node(plan, build_directory, optimise));
   return [library, &plan, seed](uint32_t node, uint8_t has_link) {
     return std::make_unique<VerilatedNode>(library, plan, node, has_link, seed == 0 ? 0 : seed + node);

@@ -257,7 +257,7 @@ void legalise(const RtlDesign& design, bool with_lattice) {
   };
   at_most("the width of a particle's exact sum", design.pair_sum_bits, 64,
           {"widths.strength_bits", "widths.difference_frac", "node.capacity"});
-  at_most("the width of a particle", design.particle_bits, 1024,
+  at_most("the width of a particle", design.particle_bits, design.text ? 2048 : 1024,
           {"widths.velocity_bits", "widths.displacement_bits"});
   for (const RtlTable& t : design.tables) {
     at_most("a table's index width", t.index_bits, 18, {"table.index_bits"});

@@ -23,7 +23,6 @@
 #include "hw/rtl/rule_datapath.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
-#include "model/program/integer_program.h"
 
 namespace cuboct {
 namespace {
@@ -39,10 +38,6 @@ constexpr const char* kMarker = ".cuboct-emit";
 RtlDesign design_of(const Plan& plan) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
-  if (plan.program && plan.program->rows)
-    throw InputError("RTL holds no bonds of the body as packed yet",
-                     "engine systemc runs them, cycle by cycle")
-        .about({"rule.file", "rule"});
   RtlDesign design = decide(plan);
   if (plan.program) design.rule = rule_parameters(plan);
   return design;

@@ -66,6 +66,12 @@ class Datapath {
       }
     }
     candidate_bits_ = lsb;
+    places_ = plan.words.bonds;
+    for (const WordField& f : plan.words.particle) {
+      if (f.place == 0 && f.kind == FieldKind::bond_other) bond_lsb_ = f.lsb;
+      if (f.place == 0) place_bits_ = f.lsb + f.bits - bond_lsb_;
+      if (f.place == 0 && f.kind == FieldKind::bond_kind) kind_bits_ = f.bits;
+    }
     for (const graph::Round& round : program_.rounds) {
       pairs_.push_back(pipeline::pair_pipeline(round));
       finishes_.push_back(pipeline::finish_pipeline(program_, round));
@@ -78,6 +84,12 @@ class Datapath {
   std::string text();
   std::vector<pipeline::Module> pipelines() const;
   int later_bits() const { return candidate_bits_ - candidate_pos_ - rest_; }
+  int places() const { return places_; }
+  int bond_lsb() const { return bond_lsb_; }
+  int place_bits() const { return place_bits_; }
+  int id_in_candidate() const { return other("", FieldKind::id).lsb; }
+  // Bits of an own particle that a pair reads.
+  int pair_bits() const { return places_ > 0 ? plan_.words.particle_bits : id_lsb() + plan_.words.id_bits; }
   int id_lsb() const { return own_field(FieldKind::id).lsb; }
 
  private:
@@ -104,6 +116,19 @@ class Datapath {
   Slice other_number(const std::string& of, int number, int round) const;
   std::string types_of(const std::string& own_word, const std::string& other_word, const Node& node, int bits,
                        const std::string& name, std::string& text) const;
+  // Of the first place of a row.
+  const WordField& bond_field(int number) const {
+    return *std::ranges::find_if(plan_.words.particle, [&](const WordField& f) {
+      return f.kind == FieldKind::bond_field && f.place == 0 && f.number == number;
+    });
+  }
+  // Where numbers that rounds write begin in a place, and their bits.
+  int numbers_lsb() const { return plan_.words.id_bits + kind_bits_; }
+  int place_numbers() const { return place_bits_ - numbers_lsb(); }
+  std::string kind_of(const Node& node, int bits, const std::string& name, std::string& text) const;
+  std::string met_of(int round) const;
+  std::string bonds_text() const;
+  std::string lost_of(int round);
   std::string input(const Node& node, int round, bool pair, int bits, std::string& text);
   std::string inputs(const graph::Graph& graph, const pipeline::Schedule& schedule, int round, bool pair,
                      std::string& connections);
@@ -126,8 +151,10 @@ class Datapath {
   std::vector<WordField> others_;  // of a candidate, behind its positions
   std::vector<pipeline::Outputs> pairs_, finishes_;
   std::vector<pipeline::Schedule> pair_schedules_, finish_schedules_;
-  int step_bits_ = 0;    // of the step's number; 0: nobody reads it
-  int number_bits_ = 0;  // of any number that a fault tells
+  int step_bits_ = 0;                                  // of the step's number; 0: nobody reads it
+  int places_ = 0;                                     // of a row of bonds
+  int bond_lsb_ = 0, place_bits_ = 0, kind_bits_ = 0;  // of the row, of a place, of a kind's number
+  int number_bits_ = 0;                                // of any number that a fault tells
 };
 
 // A round may send a number that an earlier round sent before a finish changed it.
@@ -204,6 +231,193 @@ std::string Datapath::types_of(const std::string& own_word, const std::string& o
   return name;
 }
 
+// A constant of a bond, by the kind that stands lowest in `bond`.
+std::string Datapath::kind_of(const Node& node, int bits, const std::string& name, std::string& text) const {
+  const graph::BondRows& rows = *plan_.program->rows;
+  const size_t constants = program_.bond_constants.size();
+  const auto value = [&](uint32_t kind) {
+    return literal(rows.constants[kind * constants + at(node.index)], bits);
+  };
+  if (rows.kinds() == 1) return value(0);
+  text += fmt::format("    logic {}{};\n    always_comb begin\n      unique case (bond[{}:0])\n",
+                      range_text(bits), name, kind_bits_ - 1);
+  for (uint32_t kind = 0; kind < rows.kinds(); ++kind)
+    text += fmt::format("        {}: {} = {};\n", literal(kind, kind_bits_), name, value(kind));
+  text += fmt::format("        default: {} = '0;\n      endcase\n    end\n", name);
+  return name;
+}
+
+// In a pair's pipe: which place of the row has the candidate, its kind and numbers; and what becomes of
+// these.
+std::string Datapath::met_of(int k) const {
+  const int B = places_, id = plan_.words.id_bits, rest = place_bits_ - id, numbers = place_numbers();
+  const int C = pair_schedules_[at(k)].cycles;
+  std::string text = fmt::format(
+      "    logic [{0}:0] met, met_late;  // by place: it has the candidate\n"
+      "    logic [SlotBits-1:0] slot_q;\n"
+      "    for (genvar p = 0; p < {1}; p++) begin : gen_met\n"
+      "      assign met[p] = (own[{2}+p*{3} +: {4}] == candidate_q[{5} +: {4}]);\n"
+      "    end\n"
+      "    cuboct_delay #(.Bits({1}), .Depth({6})) u_met (.clk_i, .d_i(met), .q_o(met_late));\n"
+      "    always_ff @(posedge clk_i) slot_q <= next_slot;\n"
+      "    assign met_{7}[f*{1} +: {1}] = met_late & {{{1} {{age_q[{8}]}}}};\n"
+      "    assign met_slot_{7}[f*SlotBits +: SlotBits] = slot_q;\n",
+      B - 1, B, bond_lsb_, place_bits_, id, id_in_candidate(), C + 1, k + 1, C + 2);
+  if (rest > 0)
+    text += fmt::format(
+        "    logic [{0}:0] bond;  // of that place: its kind, its numbers\n"
+        "    always_comb begin\n"
+        "      bond = '0;\n"
+        "      for (int p = 0; p < {1}; p = p + 1) bond = bond | (own[{2}+p*{3} +: {4}] & {{{4} "
+        "{{met[p]}}}});\n"
+        "    end\n",
+        rest - 1, B, bond_lsb_ + id, place_bits_, rest);
+  if (numbers == 0) return text;
+  text += fmt::format(
+      "    logic [{}:0] old_numbers;\n"
+      "    cuboct_delay #(.Bits({}), .Depth({})) u_old (.clk_i, .d_i(bond[{} +: {}]), .q_o(old_numbers));\n",
+      numbers - 1, numbers, C + 1, kind_bits_, numbers);
+  // Written numbers in the place of the old ones.
+  const graph::Round& round = program_.rounds[at(k)];
+  std::map<int, std::pair<int, std::string>> made;
+  for (size_t w = 0; w < round.bond_writes.size(); ++w) {
+    const graph::Write& write = round.bond_writes[w];
+    const WordField& f = bond_field(program_.bond_place(write.field) + write.component);
+    const Form form = form_of_output(pair_schedules_[at(k)], round.numbers() + static_cast<int>(w));
+    made[f.lsb - bond_lsb_ - numbers_lsb()] = {
+        f.bits,
+        Slice{fmt::format("bond_{}_{}", write.field, write.component), 0, form.bits, form.is_signed}.fit(
+            f.bits)};
+  }
+  std::vector<std::string> parts;
+  int end = numbers;
+  for (auto part = made.rbegin(); part != made.rend(); ++part) {
+    const int above = part->first + part->second.first;
+    if (above < end) parts.push_back(fmt::format("old_numbers[{}:{}]", end - 1, above));
+    parts.push_back(part->second.second);
+    end = part->first;
+  }
+  if (end > 0) parts.push_back(fmt::format("old_numbers[{}:0]", end - 1));
+  return text + fmt::format("    assign new_numbers_{}[f*{} +: {}] = {{{}}};\n", k + 1, numbers, numbers,
+                            fmt::join(parts, ", "));
+}
+
+// What the rounds meet and write of bonds, until the particle is taken.
+std::string Datapath::bonds_text() const {
+  if (places_ == 0) return "";
+  const int B = places_, numbers = place_numbers();
+  std::string text = fmt::format(
+      "\n  // By slot and place: the bond has met its partner in this round; then the numbers that the pair "
+      "left of it.\n"
+      "  logic [{0}:0] bond_met_q [0:{1}];\n  logic [{2}:0] bond_numbers_q [0:{1}];\n"
+      "  logic [ForcePipes*{3}-1:0] met;\n  logic [ForcePipes*SlotBits-1:0] met_slot;\n"
+      "  logic [ForcePipes*{4}-1:0] new_numbers;\n",
+      B - 1, plan_.arch.capacity - 1, B * std::max(1, numbers) - 1, B, std::max(1, numbers));
+  std::string met, slot, made;
+  for (int k = 1; k <= rounds(); ++k) {
+    const char* or_text = k > 1 ? " | " : "";
+    met += fmt::format("{}met_{}", or_text, k);
+    slot += fmt::format("{}(met_slot_{} & {{(ForcePipes * SlotBits) {{round_i[{}]}}}})", or_text, k, k - 1);
+    made += fmt::format("{}(new_numbers_{} & {{(ForcePipes * {}) {{round_i[{}]}}}})", or_text, k,
+                        std::max(1, numbers), k - 1);
+  }
+  text += fmt::format(
+      "  assign met         = {};\n  assign met_slot    = {};\n  assign new_numbers = {};\n"
+      "  for (genvar s = 0; s < {}; s++) begin : gen_bonds\n"
+      "    localparam int Slot = s;\n"
+      "    always_ff @(posedge clk_i) begin\n"
+      "      if (!rst_ni || (take_i && take_slot_i == Slot[SlotBits-1:0])) bond_met_q[s] <= '0;\n"
+      "      else\n"
+      "        for (int f = 0; f < ForcePipes; f = f + 1)\n"
+      "          if (met_slot[f*SlotBits +: SlotBits] == Slot[SlotBits-1:0])\n"
+      "            for (int p = 0; p < {}; p = p + 1)\n"
+      "              if (met[f*{}+p]) bond_met_q[s][p] <= 1'b1;\n"
+      "    end\n",
+      met, slot, made, plan_.arch.capacity, B, B);
+  if (numbers > 0)
+    text += fmt::format(
+        "    always_ff @(posedge clk_i) begin\n"
+        "      for (int f = 0; f < ForcePipes; f = f + 1)\n"
+        "        if (met_slot[f*SlotBits +: SlotBits] == Slot[SlotBits-1:0])\n"
+        "          for (int p = 0; p < {0}; p = p + 1)\n"
+        "            if (met[f*{0}+p]) bond_numbers_q[s][p*{1} +: {1}] <= new_numbers[f*{1} +: {1}];\n"
+        "    end\n",
+        B, numbers);
+  else
+    text += "    assign bond_numbers_q[s] = '0;\n";
+  text += fmt::format(
+      "  end\n"
+      "  // A particle as it is taken: with the numbers that its bonds have now.\n"
+      "  logic [{0}:0] taken_met;\n  logic [{1}:0] taken_numbers;\n  logic [{2}:0] taken_slot;\n"
+      "  assign taken_met     = bond_met_q[take_slot_i];\n"
+      "  assign taken_numbers = bond_numbers_q[take_slot_i];\n"
+      "  always_comb begin\n    taken_slot = slot_i;\n",
+      B - 1, B * std::max(1, numbers) - 1, plan_.words.particle_bits + 1);
+  if (numbers > 0)
+    text += fmt::format(
+        "    for (int p = 0; p < {0}; p = p + 1)\n"
+        "      if (taken_met[p]) taken_slot[{1}+p*{2} +: {3}] = taken_numbers[p*{3} +: {3}];\n",
+        B, bond_lsb_ + numbers_lsb(), place_bits_, numbers);
+  return text + "  end\n  logic unused_numbers;\n  assign unused_numbers = ^{taken_numbers, new_numbers};\n";
+}
+
+// In a finish: the bonds of the taken particle that count and were not met.
+std::string Datapath::lost_of(int k) {
+  const int B = places_, id = plan_.words.id_bits, rest = place_bits_ - id;
+  int cycles = 0;
+  std::string text = fmt::format(
+      "    logic [{0}:0] met_q, missed, lost;\n"
+      "    always_ff @(posedge clk_i) begin\n      if (take_i) met_q <= taken_met;\n    end\n"
+      "    logic [{1}:0] late_slot;\n"
+      "    for (genvar p = 0; p < {2}; p++) begin : gen_place\n"
+      "      logic still;  // the bond counts\n"
+      "      assign missed[p] = taken_q && !met_q[p] && (slot_q[{3}+p*{4} +: {5}] != {6});\n",
+      B - 1, plan_.words.particle_bits + 1, B, bond_lsb_, place_bits_, id,
+      own("slot_q", FieldKind::id).text());
+  if (program_.broken_at >= 0) {
+    const pipeline::Schedule schedule = pipeline::schedule_of(program_.broken, {program_.broken_at});
+    cycles = schedule.cycles;
+    std::string connections, before;
+    if (rest > 0)
+      text += fmt::format("      logic [{}:0] bond;\n      assign bond = slot_q[{}+p*{} +: {}];\n", rest - 1,
+                          bond_lsb_ + id, place_bits_, rest);
+    for (const pipeline::Port& port : schedule.steps.inputs) {
+      const Node& node = program_.broken.nodes[at(port.node)];
+      const Form form = form_of_step(schedule, port.step);
+      const std::string value = input(node, k, true, form.bits, before);
+      connections += fmt::format(", .{}({})", pipeline::port_name(node), value);
+    }
+    text +=
+        before + fmt::format(
+                     "      logic broken, made_broken;\n"
+                     "      cuboct_broken u_broken (.clk_i, .rst_ni, .valid_i(1'b1){}, .broken_o(broken), "
+                     ".valid_o(made_broken));\n"
+                     "      assign still = !broken;\n"
+                     "      logic unused_made;\n      assign unused_made = made_broken;\n",
+                     connections);
+  } else {
+    text += "      assign still = 1'b1;\n";
+  }
+  text += fmt::format(
+      "      logic missed_late;\n"
+      "      cuboct_delay #(.Bits(1), .Depth({0})) u_missed (.clk_i, .d_i(missed[p]), .q_o(missed_late));\n"
+      "      assign lost[p] = missed_late && still;\n"
+      "    end\n"
+      "    cuboct_delay #(.Bits({1}), .Depth({0})) u_late_slot (.clk_i, .d_i(slot_q), .q_o(late_slot));\n"
+      "    logic [{2}:0] lost_other;\n"
+      "    always_comb begin\n"
+      "      lost_other = '0;\n"
+      "      for (int p = {3}; p >= 0; p = p - 1) if (lost[p]) lost_other = late_slot[{4}+p*{5} +: {6}];\n"
+      "    end\n"
+      "    assign lost_{7}       = (lost != '0);\n"
+      "    assign lost_id_{7}    = {8} & {{{6} {{lost_{7}}}}};\n"
+      "    assign lost_other_{7} = lost_other;\n"
+      "    logic unused_late;\n    assign unused_late = ^late_slot;\n",
+      cycles, plan_.words.particle_bits + 2, id - 1, B - 1, bond_lsb_, place_bits_, id, k + 1,
+      own("late_slot", FieldKind::id).text());
+  return text;
+}
+
 // What an input of a graph is in the cycle before its register; `text` may declare what it needs.
 std::string Datapath::input(const Node& node, int round, bool pair, int bits, std::string& text) {
   const std::string word = pair ? "own" : "slot_q";
@@ -249,11 +463,14 @@ std::string Datapath::input(const Node& node, int round, bool pair, int bits, st
     case Source::other_constant:
     case Source::pair_constant:
       return types_of(word, "candidate_q", node, bits, name, text);
-    case Source::bond_field:
+    case Source::bond_field: {
+      const WordField& f = bond_field(program_.bond_place(node.index) + axis);
+      return Slice{"bond", f.lsb - bond_lsb_ - plan_.words.id_bits, f.bits, f.is_signed}.fit(bits);
+    }
     case Source::bond_constant:
-      break;
+      return kind_of(node, bits, name, text);
   }
-  throw std::logic_error("no RTL of bonds yet");
+  throw std::logic_error("RTL has no such input");
 }
 
 // Registers of the inputs, and what connects them.
@@ -329,10 +546,13 @@ std::string Datapath::pair_of(int k) {
       "    cuboct_delay #(.Bits(SlotBits), .Depth({7})) u_slot (\n"
       "      .clk_i, .d_i(issue_slot_i[f*SlotBits +: SlotBits]), .q_o(next_slot)\n"
       "    );\n",
-      k + 1, range_text(id_lsb() + plan_.words.id_bits), range_text(candidate_bits_), C + 2,
-      id_lsb() + plan_.words.id_bits, C + 1, k, C + 1);
+      k + 1, range_text(pair_bits()), range_text(candidate_bits_), C + 2, pair_bits(), C + 1, k, C + 1);
+  std::string outputs;
+  const std::string declared = declared_outputs(schedule, pairs_[at(k)], outputs);
+  if (places_ > 0) text += declared + met_of(k);
   text += inputs(round.pair, schedule, k, true, connections);
-  text += declared_outputs(schedule, pairs_[at(k)], connections);
+  if (places_ == 0) text += declared;
+  connections += outputs;
   text += fmt::format(
       "    cuboct_pair_{0} u_pipeline (\n      .clk_i, .rst_ni, .valid_i(age_q[2]){1},\n      "
       ".valid_o(made)\n    );\n"
@@ -406,9 +626,10 @@ std::string Datapath::finish_of(int k) {
       "      end\n"
       "    end\n"
       "    always_ff @(posedge clk_i) begin\n"
-      "      if (take_i) slot_q <= slot_i;\n"
+      "      if (take_i) slot_q <= {4};\n"
       "    end\n",
-      k + 1, C + 2, range_text(own_bits), k);
+      k + 1, C + 2, range_text(own_bits), k, places_ > 0 ? "taken_slot" : "slot_i");
+  if (places_ > 0) text += lost_of(k);
   for (int s = 0; s < static_cast<int>(round.sums.size()); ++s) {
     const int components = static_cast<int>(round.sums[at(s)].terms.size()), sum = sum_bits(k, s);
     text += fmt::format(
@@ -506,9 +727,19 @@ std::string Datapath::finish_of(int k) {
 }
 
 std::string Datapath::text() {
-  const int own_bits = plan_.words.particle_bits + 2, seen = id_lsb() + plan_.words.id_bits;
+  const int own_bits = plan_.words.particle_bits + 2, seen = pair_bits();
   std::string rounds_text;
-  for (int k = 0; k < rounds(); ++k) rounds_text += pair_of(k) + finish_of(k);
+  for (int k = 0; k < rounds(); ++k) {
+    if (places_ > 0)
+      rounds_text += fmt::format(
+          "\n  logic [ForcePipes*{1}-1:0] met_{0};\n  logic [ForcePipes*SlotBits-1:0] met_slot_{0};\n"
+          "  logic [ForcePipes*{2}-1:0] new_numbers_{0};\n  logic lost_{0};\n  logic {3}lost_id_{0}, "
+          "lost_other_{0};\n{4}",
+          k + 1, places_, std::max(1, place_numbers()), range_text(plan_.words.id_bits),
+          place_numbers() == 0 ? fmt::format("  assign new_numbers_{} = '0;\n", k + 1) : std::string());
+    rounds_text += pair_of(k) + finish_of(k);
+  }
+  if (places_ > 0) number_bits_ = std::max(number_bits_, plan_.words.id_bits + 1);
   number_bits_ = std::max(number_bits_,
                           static_cast<int>(std::bit_width(static_cast<unsigned>(plan_.arch.capacity))) + 1);
   const auto joined = [&](const char* format, const char* between) {
@@ -575,7 +806,7 @@ std::string Datapath::text() {
         "  always_ff @(posedge clk_i) begin\n    if (!rst_ni) step_q <= '0;\n"
         "    else if (step_end_i) step_q <= step_q + 1'b1;\n  end\n",
         range_text(step_bits_));
-  text += rounds_text;
+  text += bonds_text() + rounds_text;
   text += fmt::format(
       "\n  assign busy_o        = {};\n"
       "  assign kick_slot_o   = {};\n"
@@ -585,6 +816,14 @@ std::string Datapath::text() {
       "  assign leaving_o     = {};\n",
       joined("busy_{}", " | "), slots, joined("written_{}", " || "), places, joined("slot_{}", " | "),
       leaving);
+  // A bond that was lost speaks beside the pipes, in the round's finish.
+  const auto with_lost = [&](const std::string& lost, const std::string& pipes) {
+    return places_ > 0 ? fmt::format("{{{}, {}}}", lost, pipes) : pipes;
+  };
+  std::string lost_codes;
+  for (int k = 0; k < rounds(); ++k)
+    lost_codes += fmt::format("{}({{4'd{}, 4'd{}}} & {{8 {{lost_{}}}}})", k > 0 ? " | " : "", 2 * k,
+                              static_cast<int>(Fault::bond_lost), k + 1);
   // The id of a finish's fault is that of the slot.
   text += fmt::format(
       "\n  logic [ForcePipes*64-1:0] pipe_numbers;\n"
@@ -612,10 +851,10 @@ std::string Datapath::text() {
       "    move_id_q   <= move_id_i;\n"
       "  end\n"
       "  cuboct_least_fault #(\n"
-      "    .Sources(ForcePipes), .IdBits({}), .NumberBits(NumberBits), .CodeBits(8)\n"
+      "    .Sources({}), .IdBits({}), .NumberBits(NumberBits), .CodeBits(8)\n"
       "  ) u_fault (\n"
-      "    .clk_i, .rst_ni, .clear_i(step_end_i), .valid_i({}), .code_i({}),\n"
-      "    .id_i(kick_id_i), .number_i(pipe_numbers), .update_valid_i({}),\n"
+      "    .clk_i, .rst_ni, .clear_i(step_end_i), .valid_i({}),\n      .code_i({}),\n"
+      "    .id_i({}), .number_i({}), .update_valid_i({}),\n"
       "    .update_code_i({}), .update_id_i({}),\n"
       "    .update_number_i({{{{(65 - NumberBits) {{finish_number[NumberBits-1]}}}}, "
       "finish_number[NumberBits-2:0]}}),\n"
@@ -626,7 +865,11 @@ std::string Datapath::text() {
       "  );\n"
       "  logic unused_candidate;\n  assign unused_candidate = ^candidate_i;\nendmodule\n",
       joined("number_{}", " | "), joined("finish_number_{}", " | "), range_text(plan_.words.id_bits),
-      2 * rounds(), plan_.words.id_bits, joined("fault_{}", " | "), joined("code_{}", " | "),
+      2 * rounds(), plan_.arch.force_pipes + (places_ > 0 ? 1 : 0), plan_.words.id_bits,
+      with_lost(joined("lost_{}", " || "), joined("fault_{}", " | ")),
+      with_lost(lost_codes, joined("code_{}", " | ")), with_lost(joined("lost_id_{}", " | "), "kick_id_i"),
+      with_lost(fmt::format("{{{} {{1'b0}}}}, {}", 64 - plan_.words.id_bits, joined("lost_other_{}", " | ")),
+                "pipe_numbers"),
       joined("finish_fault_{}", " || "), joined("finish_code_{}", " | "), own("slot_o", FieldKind::id).text(),
       plan_.arch.capacity);
   return text;
@@ -644,6 +887,11 @@ std::vector<pipeline::Module> Datapath::pipelines() const {
     add(print_pipeline(fmt::format("cuboct_finish_{}", k + 1), round.finish, finishes_[at(k)],
                        finish_schedules_[at(k)]));
   }
+  if (program_.bonded && program_.broken_at >= 0) {
+    const std::vector<int> broken{program_.broken_at};
+    add(print_pipeline("cuboct_broken", program_.broken, {broken, {"broken"}},
+                       pipeline::schedule_of(program_.broken, broken)));
+  }
   return all;
 }
 
@@ -660,12 +908,20 @@ std::vector<std::pair<std::string, std::string>> rule_parameters(const Plan& pla
   };
   int most = 1;
   for (const PlanRound& round : plan.rounds) most = std::max(most, bits_of(round.record));
-  return {{"IdLsb", std::to_string(datapath.id_lsb())},
-          {"Rounds", std::to_string(rounds)},
-          {"RecordBits", packed([](const PlanRound& r) { return bits_of(r.record); })},
-          {"FinishCycles", packed([](const PlanRound& r) { return r.finish; })},
-          {"MostBits", std::to_string(most)},
-          {"LaterBits", std::to_string(datapath.later_bits())}};
+  std::vector<std::pair<std::string, std::string>> all{
+      {"IdLsb", std::to_string(datapath.id_lsb())},
+      {"Rounds", std::to_string(rounds)},
+      {"RecordBits", packed([](const PlanRound& r) { return bits_of(r.record); })},
+      {"FinishCycles", packed([](const PlanRound& r) { return r.finish; })},
+      {"MostBits", std::to_string(most)},
+      {"LaterBits", std::to_string(datapath.later_bits())}};
+  if (datapath.places() > 0) {
+    all.emplace_back("Bonds", std::to_string(datapath.places()));
+    all.emplace_back("BondLsb", std::to_string(datapath.bond_lsb()));
+    all.emplace_back("BondBits", std::to_string(datapath.place_bits()));
+    all.emplace_back("IdInCandidate", std::to_string(datapath.id_in_candidate()));
+  }
+  return all;
 }
 
 std::vector<pipeline::Module> rule_modules(const Plan& plan) {

@@ -14,7 +14,11 @@ module cuboct_filter #(
   parameter int          FilterLanes     = 8,
   parameter int          RowBits         = 1,
   parameter int          SlotBits        = 4,
-  parameter int          CountBits       = 8
+  parameter int          CountBits       = 8,
+  parameter int          Bonds           = 0,   // above 0 a lane tests whether the candidate's id is one of so many
+  parameter int          IdBits          = 1,   // Bonds only
+  parameter int          IdLsb           = 0,   // of the id in a candidate; Bonds only
+  localparam int         LaneBits        = (Bonds > 0) ? Bonds * IdBits : Axes * FilterFrac
 ) (
   input  logic                                clk_i,
   input  logic                                rst_ni,
@@ -26,7 +30,7 @@ module cuboct_filter #(
   input  logic [CountBits-1:0]                own_count_i,   // own particles
   // Beside F0, from the memories: the candidate, and the row of own positions.
   input  logic [CandidateBits-1:0]            candidate_i,   // P+2 bits per axis, rest
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i, // by lane, x lowest
+  input  logic [FilterLanes*LaneBits-1:0]     row_data_i,    // by lane, x lowest, or the ids of bonds
   // To the queue.
   input  logic                                full_i,        // the queue can take nothing
   output logic                                stall_o,       // F0 ... F3 stay; so must the streamer
@@ -43,7 +47,7 @@ module cuboct_filter #(
   logic [RowBits-1:0]       f0_row_q, f1_row_q, f2_row_q, f3_row_q;
   logic [SlotBits-1:0]      f0_slot_q;
   logic [CandidateBits-1:0] f1_candidate_q, f2_candidate_q, f3_candidate_q;
-  logic [FilterLanes*Axes*FilterFrac-1:0] f1_row_data_q;
+  logic [FilterLanes*LaneBits-1:0] f1_row_data_q;
   logic [FilterLanes-1:0]   test, f1_test_q, f2_test_q;  // lanes whose slot exists and is not the candidate itself
   logic [FilterLanes-1:0]   mask, f3_mask_q;
   logic                     wants_push;
@@ -98,21 +102,36 @@ module cuboct_filter #(
     localparam int Lane = l;
     logic [RowSlots-1:0] slot;
     logic                exists, itself;
-    logic [((Axes == 3) ? 5 : 2)-1:0] near;
-    assign mask[l] = (near == '1);
     assign slot   = {{(RowSlots - RowBits) {1'b0}}, f0_row_q} * FilterLanes[RowSlots-1:0] + Lane[RowSlots-1:0];
     assign exists = (slot < {{(RowSlots - CountBits) {1'b0}}, own_count_i});
     assign itself = f0_own_q && (slot == {{(RowSlots - SlotBits) {1'b0}}, f0_slot_q});
     assign test[l] = exists && !itself;
-    cuboct_filter_lane #(
-      .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
-      .Registered(1)
-    ) u_lane (
-      .clk_i, .en_i(!stall_o), .test_i(f2_test_q[l]), .own_i(f1_row_data_q[l*Axes*FilterFrac +: Axes*FilterFrac]),
-      .candidate_i(coarse), .near_o(near)
-    );
+    if (Bonds > 0) begin : gen_bonds
+      logic [Bonds-1:0] met_d, met_q;
+      for (genvar k = 0; k < Bonds; k++) begin : gen_place
+        assign met_d[k] = (f1_row_data_q[l*LaneBits+k*IdBits +: IdBits] == f1_candidate_q[IdLsb +: IdBits]);
+      end
+      always_ff @(posedge clk_i) begin
+        if (!stall_o) met_q <= met_d;
+      end
+      assign mask[l] = f2_test_q[l] && (met_q != '0);
+    end else begin : gen_planar
+      logic [((Axes == 3) ? 5 : 2)-1:0] near;
+      assign mask[l] = (near == '1);
+      cuboct_filter_lane #(
+        .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
+        .Registered(1)
+      ) u_lane (
+        .clk_i, .en_i(!stall_o), .test_i(f2_test_q[l]), .own_i(f1_row_data_q[l*Axes*FilterFrac +: Axes*FilterFrac]),
+        .candidate_i(coarse), .near_o(near)
+      );
+    end
   end
 
+  if (Bonds > 0) begin : gen_no_coarse
+    logic unused_coarse;
+    assign unused_coarse = ^coarse;
+  end
   assign candidate_o = f3_candidate_q;
   assign row_o       = f3_row_q;
   assign mask_o      = f3_mask_q;

@@ -22,6 +22,10 @@ module cuboct_pair_finder #(
   parameter int          SlotBits        = 4,
   parameter int          AddrBits        = 8,
   parameter int          CountBits       = 9,
+  parameter int          Bonds           = 0,   // above 0 pairs are those whose candidate is a partner of the slot
+  parameter int          IdBits          = 1,   // Bonds only
+  parameter int          IdLsb           = 0,   // of the id in a candidate; Bonds only
+  localparam int         LaneBits        = (Bonds > 0) ? Bonds * IdBits : Axes * FilterFrac,
   localparam int         Segments        = Halos + Own
 ) (
   input  logic                                  clk_i,
@@ -41,7 +45,7 @@ module cuboct_pair_finder #(
   input  logic [CandidateBits-1:0]              own_i,        // an own particle as a candidate
   input  logic [Halos*CandidateBits-1:0]        halos_i,      // by segment behind the own ones
   output logic [RowBits-1:0]                    row_o,        // row of own slots, with read_o
-  input  logic [FilterLanes*Axes*FilterFrac-1:0] row_data_i,  // by lane, x lowest
+  input  logic [FilterLanes*LaneBits-1:0]       row_data_i,   // by lane, x lowest, or the partners' ids
   // Pairs.
   output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
   output logic [ForcePipes-1:0]                 issue_o,      // per pipe: a pair
@@ -60,7 +64,7 @@ module cuboct_pair_finder #(
   logic [RowBits-1:0]       read_row;
   logic [SlotBits-1:0]      read_slot;
   logic [CandidateBits-1:0] read_own;
-  logic [FilterLanes*Axes*FilterFrac-1:0] read_row_data;
+  logic [FilterLanes*LaneBits-1:0] read_row_data;
   logic [CandidateBits-1:0] candidate, candidate_out, candidate_head;
   logic [FilterLanes-1:0]   mask_out, rest_out, rest_head;
   logic [ForcePipes-1:0]    valid_out, valid_head;  // first pairs of the mask
@@ -81,7 +85,7 @@ module cuboct_pair_finder #(
     logic [RowBits-1:0]       row_q;
     logic [SlotBits-1:0]      slot_q;
     logic [CandidateBits-1:0] own_q;
-    logic [FilterLanes*Axes*FilterFrac-1:0] row_data_q;
+    logic [FilterLanes*LaneBits-1:0] row_data_q;
     always_ff @(posedge clk_i) begin
       if (!rst_ni) present_q <= 1'b0;
       else if (!stall) present_q <= present;
@@ -126,7 +130,7 @@ module cuboct_pair_finder #(
   cuboct_filter #(
     .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
-    .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
+    .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits), .Bonds(Bonds), .IdBits(IdBits), .IdLsb(IdLsb)
   ) u_filter (
     .clk_i, .rst_ni, .present_i(read_present), .row_i(read_row), .own_i((Own != 0) && read_pick[0]),
     .slot_i(read_slot), .own_count_i, .candidate_i(candidate), .row_data_i(read_row_data),

@@ -19,7 +19,10 @@ module cuboct_slots #(
   parameter int ForcePipes   = 1,    // >= 1
   parameter int Streamers    = 1,    // 1 or 2; own particles are read by the first, rows by each
   parameter int Narrow       = 0,    // 0, 1
-  localparam int CoarseBits  = Axes * FilterFrac
+  parameter int Bonds        = 0,    // places of a row of bonds; above 0 a bank holds their partners' ids instead
+  parameter int BondLsb      = 0,    // where the row starts in a particle; with the partner's id
+  parameter int BondBits     = 1,    // of a place
+  localparam int CoarseBits  = (Bonds > 0) ? Bonds * IdBits : Axes * FilterFrac
 ) (
   input  logic                           clk_i,
   input  logic                           write_i,        // a slot is written
@@ -73,8 +76,14 @@ module cuboct_slots #(
 
   if (Narrow == 0) begin : gen_banks
     logic [CoarseBits-1:0] coarse;
-    for (genvar a = 0; a < Axes; a++) begin : gen_coarse
-      assign coarse[a*FilterFrac +: FilterFrac] = write_data_i[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
+    if (Bonds > 0) begin : gen_partners
+      for (genvar p = 0; p < Bonds; p++) begin : gen_place
+        assign coarse[p*IdBits +: IdBits] = write_data_i[BondLsb+p*BondBits +: IdBits];
+      end
+    end else begin : gen_positions
+      for (genvar a = 0; a < Axes; a++) begin : gen_coarse
+        assign coarse[a*FilterFrac +: FilterFrac] = write_data_i[a*PositionFrac+PositionFrac-FilterFrac +: FilterFrac];
+      end
     end
     for (genvar l = 0; l < FilterLanes; l++) begin : gen_bank
       // Slot s lies in bank s % FilterLanes, row s / FilterLanes.

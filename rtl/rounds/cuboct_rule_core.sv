@@ -27,6 +27,11 @@ module cuboct_rule_core #(
   parameter logic [Rounds*16-1:0] FinishCycles = {Rounds{16'd6}}, // by round: from a particle's read to its result's
   parameter int          MostBits      = 62,  // of any round's record
   parameter int          LaterBits     = 0,   // of all later rounds' records together
+  // Bonds of the body as packed: a particle's word ends with its row of them.
+  parameter int          Bonds         = 0,   // places of the row, 0: partners are all that are near
+  parameter int          BondLsb       = 0,   // of the row
+  parameter int          BondBits      = 1,   // of a place, which begins with the partner's id
+  parameter int          IdInCandidate = 0,   // where a candidate's id is; Bonds only
   localparam int         Faces         = 2 * Axes,
   localparam int         Phases        = 5 * Rounds + 3
 ) (
@@ -66,6 +71,8 @@ module cuboct_rule_core #(
   localparam int PosBits       = Axes * PositionFrac;
   localparam int OwnBits       = ParticleBits + 2;  // a slot: {away_x, particle}
   localparam int SeenBits      = IdLsb + IdBits;    // what others see of it
+  localparam int PairBits      = (Bonds > 0) ? ParticleBits : SeenBits;  // what a pair reads of it
+  localparam int LaneBits      = (Bonds > 0) ? Bonds * IdBits : Axes * FilterFrac;
   localparam int HaloBits      = {16'd0, RecordBits[15:0]};
   localparam int CandPos       = Axes * (PositionFrac + 2);
   localparam int RestBits      = HaloBits - Axes * PositionFrac - 2 * (Axes - 1);
@@ -107,13 +114,13 @@ module cuboct_rule_core #(
   logic                           own_write, load, update_write, migrate_write, migrate_count_set;
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
-  logic [SeenBits-1:0]            stream_data;
+  logic [PairBits-1:0]            stream_data;
   logic                           stream_read, main_read, migrate_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot_next;
-  logic [ForcePipes*SeenBits-1:0] pipe_data;
+  logic [ForcePipes*PairBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
   logic [RowBits-1:0]             row;
-  logic [FilterLanes*Axes*FilterFrac-1:0] row_data;
+  logic [FilterLanes*LaneBits-1:0] row_data;
 
   assign load = idle_o && load_valid_i && !full_q;
   always_comb begin
@@ -149,9 +156,10 @@ module cuboct_rule_core #(
     end
   end
   cuboct_slots #(
-    .Axes(Axes), .Bits(OwnBits), .SeenBits(SeenBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
+    .Axes(Axes), .Bits(OwnBits), .SeenBits(PairBits), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac),
     .IdLsb(IdLsb), .IdBits(IdBits), .Capacity(Capacity), .SlotBits(SlotBits), .FilterLanes(FilterLanes),
-    .RowBits(RowBits), .ForcePipes(ForcePipes), .Streamers(1), .Narrow(0)
+    .RowBits(RowBits), .ForcePipes(ForcePipes), .Streamers(1), .Narrow(0), .Bonds(Bonds),
+    .BondLsb(BondLsb), .BondBits(BondBits)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
     .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
@@ -261,7 +269,7 @@ module cuboct_rule_core #(
 
   // Particles as candidates.
   logic [CandidateBits-1:0] own_candidate, relay_own;
-  cuboct_rule_candidate u_stream_candidate (.own_i(stream_data), .candidate_o(own_candidate));
+  cuboct_rule_candidate u_stream_candidate (.own_i(stream_data[SeenBits-1:0]), .candidate_o(own_candidate));
   cuboct_rule_candidate u_relay_candidate (.own_i(main_data[SeenBits-1:0]), .candidate_o(relay_own));
 
   // Exchange: a relay for each round.
@@ -334,7 +342,8 @@ module cuboct_rule_core #(
     .Axes(Axes), .Halos(Faces), .Own(1), .Arrival(0), .Rounds(Rounds), .PositionFrac(PositionFrac),
     .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
     .CandidateBits(CandidateBits), .FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .Interval(1),
-    .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits),
+    .Bonds(Bonds), .IdBits(IdBits), .IdLsb(IdInCandidate)
   ) u_finder (
     .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .own_count_i(own_count_q), .complete_i(complete),
     .came_i(halo_came), .again_i(!round[Rounds-1]), .counts_i(halo_count), .read_o(stream_read),
