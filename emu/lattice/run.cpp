@@ -175,7 +175,9 @@ class IntegerRunner : public IntegerEngine {
   void advance(uint64_t steps, std::vector<uint64_t>* hashes) override {
     for (; steps > 0; --steps) {
       if (timing_) engine_.slots(slots_);
+      failed_ = true;
       engine_.step();
+      failed_ = false;
       if (timing_) {
         const size_t row = spans_of_step(plan_);
         spans_.resize(spans_.size() + row);
@@ -194,7 +196,7 @@ class IntegerRunner : public IntegerEngine {
   Counters counters() const override {
     const LatticeCounters& counts = engine_.counters();
     Counters all;
-    if (timing_) {
+    if (timing_ && !failed_) {
       CellSlots slots;
       engine_.slots(slots);
       all.emplace_back("cycles", static_cast<double>(timing_->cycles(slots)));
@@ -227,6 +229,7 @@ class IntegerRunner : public IntegerEngine {
   LatticeEngine engine_;
   Ranks* const ranks_;
   std::optional<TimingModel> timing_;
+  bool failed_ = false;  // the last step
   CellSlots slots_;
   std::vector<PhaseSpan> spans_;
 };
@@ -252,7 +255,12 @@ EngineKind lattice_kind(const Scene& scene, const Plan& plan, const LatticeChoic
   if (plan.program != nullptr) {
     kind.make = [&scene, &plan, &choice](CheckpointReader* from, bool cycles) {
       if (cycles) check_timed(plan, choice.engine.ranks);
-      const std::vector<uint64_t> clocks = from ? from->head().engine.counters : std::vector<uint64_t>();
+      std::vector<uint64_t> clocks;
+      if (from && cycles) {
+        const std::vector<uint64_t>& own = from->head().engine.own;
+        const size_t words = program_words(*plan.program, plan.particles);
+        clocks.assign(own.begin() + static_cast<ptrdiff_t>(std::min(words, own.size())), own.end());
+      }
       return integer_run(scene, plan, from, [&](const State& state) {
         return std::make_unique<IntegerRunner>(plan, state, choice.engine, cycles, clocks);
       });

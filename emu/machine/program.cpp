@@ -11,6 +11,7 @@
 #include "hw/engine/engine_kind.h"
 #include "hw/program/options.h"
 #include "hw/program/program.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 namespace {
@@ -54,6 +55,10 @@ class MachineProgram : public EngineProgram {
     run_.steps = options.run.steps;
     run_.frames = asked_steps(options.run);
     run_.keep_last = asks_for_last(options.run);
+    if (plan.program && plan.program->rows) {  // broken bonds are counted at the end
+      run_.keep_last = true;
+      run_.frames.push_back(run_.steps);
+    }
     if (run_.faults.enabled() && plan.arch.boards.several())
       throw InputError("--inject-faults: links between devices have no faults here",
                        "leave out [boards], or the faults");

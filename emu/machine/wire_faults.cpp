@@ -25,14 +25,15 @@ uint64_t beats_per_step(const Plan& plan, const State& state) {
   const BrickMap map(plan.lattice, plan.bricks, plan.rule.axes);
   std::vector<uint64_t> held(plan.lattice.size());
   for (const Particle& p : state.particles) ++held[p.cell];
-  uint64_t beats = 0;
+  uint64_t beats = 0, record_beats = 0;  // record_beats: of a particle in all rounds
+  for (const PlanRound& round : plan.rounds) record_beats += static_cast<uint64_t>(round.beats);
   for (uint32_t n = 0; n < plan.nodes(); ++n)
     for (int f = 0; f < 2 * plan.rule.axes; ++f) {
       if (plan.neighbour(n, f) == kNoNode) continue;
-      beats += 2;  // the end beats of a halo and of a migrate stream
+      beats += 1 + plan.rounds.size();  // the end beats of particles, and of each round's halo
       for (const BrickWalk::Sent& s : map.walk(n).sent[static_cast<size_t>(f)])
         if (const uint32_t cell = map.cell(n, s.grid); cell != kNoCell)
-          beats += held[cell] * static_cast<uint64_t>(plan.words.halo_beats);
+          beats += held[cell] * record_beats;
     }
   return beats;
 }

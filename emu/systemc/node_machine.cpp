@@ -22,6 +22,7 @@ void NodeMachine::reset() {
   halo_end_ = {};
   migrate_end_ = 0;
   round_ = 0;
+  all_steps_ = 0;
   engine_->reset();
   main_ = Main::idle;
   fault_ = {};
@@ -84,7 +85,7 @@ void NodeMachine::enter(Main next) {
   const bool begins_engine = plan_.arch.overlap ? next == Main::exchange_x : next == Main::force;
   if (RoundWork* const work = engine_->rounds(); work != nullptr) {
     fault_.now = 2 * round_ + (next < Main::update ? 0 : next == Main::update ? 1 : 2);
-    if (next == Main::force) work->begin(round_, step_);
+    if (next == Main::force) work->begin(round_, all_steps_);
   }
   if (begins_engine) engine_->begin(now_ + 1), starting_ |= phase_bit(Main::force);
   if (next == Main::force)
@@ -122,6 +123,7 @@ void NodeMachine::finish_migration() {
     out_->fault_stage = fault_.stage;
     fault_ = {};
   }
+  ++all_steps_;
   finish_phase(++step_ < steps_ ? Main::exchange_x : Main::dump);
 }
 

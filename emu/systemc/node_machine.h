@@ -145,6 +145,7 @@ class NodeMachine : public NodeModel {
   uint8_t valid_ = 0, can_load_ = 0;
   uint8_t full_ = 0;  // link registers that held a beat at the cycle's start
   uint32_t steps_ = 0, step_ = 0;
+  uint64_t all_steps_ = 0;  // since the reset
   uint64_t link_waits_ = 0, beats_ = 0, updates_ = 0, moved_ = 0;
   std::array<uint64_t, 3> halos_{};  // records that came, by axis
 };

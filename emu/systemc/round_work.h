@@ -3,7 +3,6 @@
 // of the own slots, and what finishes make of these.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "emu/machine/words.h"
@@ -18,7 +17,7 @@ class RoundWork {
   // Keeps references to all; writes `fault`, and bonds of `own`.
   RoundWork(const Plan& plan, std::vector<Slot>& own, FaultKeeper& fault);
 
-  // The force engine of a round begins. Steps count from the start of the run.
+  // The force engine of a round begins. Steps count from the node's reset.
   void begin(int round, uint64_t step);
   size_t round() const { return round_; }
   // The own particle in `slot` meets `other`, which stays where it is until add().

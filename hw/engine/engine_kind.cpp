@@ -60,7 +60,10 @@ State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
     return plan.program ? program_beginning(scene, program_setting(plan))
                         : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
   State state = checked_state(*from, plan);
-  return plan.program ? state_of_checkpoint(std::move(state), *plan.program, from->head().engine.own) : state;
+  if (!plan.program) return state;
+  std::vector<uint64_t> own = from->head().engine.own;
+  if (from->head().cycles) own.resize(std::min(own.size(), program_words(*plan.program, state.particles.size())));
+  return state_of_checkpoint(std::move(state), *plan.program, own);
 }
 
 std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, const State& from,

@@ -99,20 +99,16 @@ class Datapath {
       return f.kind == kind && f.axis == axis && (kind != FieldKind::field || f.number == number);
     });
   }
-  bool has_own(FieldKind kind) const {
-    return std::ranges::any_of(plan_.words.particle, [&](const WordField& f) { return f.kind == kind; });
-  }
   Slice own(const std::string& of, FieldKind kind, int axis = -1, int number = 0) const {
     const WordField& f = own_field(kind, axis, number);
     return {of, f.lsb, f.bits, f.is_signed};
   }
-  Slice other(const std::string& of, FieldKind kind, int axis = -1, int number = 0) const {
-    // The last one that came: a finish may have changed it since an earlier round sent it.
-    const auto f = std::ranges::find_if(others_, [&](const WordField& g) {
-      return g.kind == kind && g.axis == axis && (kind != FieldKind::field || g.number == number);
-    });
+  Slice other(const std::string& of, FieldKind kind, int axis = -1) const {
+    const auto f = std::ranges::find_if(
+        others_, [&](const WordField& g) { return g.kind == kind && g.axis == axis; });
     return {of, f->lsb, f->bits, f->is_signed};
   }
+  // What a round has of a field: as the last round sent it that did so.
   Slice other_number(const std::string& of, int number, int round) const;
   std::string types_of(const std::string& own_word, const std::string& other_word, const Node& node, int bits,
                        const std::string& name, std::string& text) const;
@@ -157,7 +153,6 @@ class Datapath {
   int number_bits_ = 0;                                // of any number that a fault tells
 };
 
-// A round may send a number that an earlier round sent before a finish changed it.
 Slice Datapath::other_number(const std::string& of, int number, int round) const {
   int lsb = candidate_pos_;
   Slice found;

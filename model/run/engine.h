@@ -33,7 +33,7 @@ using Notes = std::vector<std::pair<std::string, std::string>>;
 
 // What a checkpoint keeps of an engine besides its particles.
 struct EngineMemory {
-  std::vector<uint64_t> counters;  // of all runs so far; of a rule of text its nodes' clocks
+  std::vector<uint64_t> counters;  // of all runs so far
   std::vector<uint64_t> own;       // what the engine alone reads: its nodes' clocks, its machine's memory
 };
 
@@ -66,7 +66,7 @@ class Engine {
   // Cells per step, along an axis: over the states that were looked at, or over all.
   virtual double largest_speed() = 0;
 
-  // The phases of the steps since the last call: [(step * nodes + node) * kPhases + phase]. Empty where the
+  // The phases of the steps since the last call: [(step * nodes + node) * phases + phase]. Empty where the
   // engine counts no cycles.
   virtual std::vector<PhaseSpan> phase_times() { return {}; }
   // Host time of the steps, where the engine knows it better than who waits for them. s

@@ -64,12 +64,17 @@ IntegerRun::IntegerRun(const Scene& scene, const ProgramSetting& setting, const 
   stale_ = true;
 }
 
+size_t program_words(const IntegerProgram& program, size_t particles) {
+  const size_t bonds = program.rows ? program.rows->other.size() : 0;
+  return static_cast<size_t>(program.program.numbers()) * particles +
+         bonds * static_cast<size_t>(program.program.bond_numbers());
+}
+
 State state_of_checkpoint(State particles, const IntegerProgram& program,
                           const std::vector<uint64_t>& memory) {
   const auto numbers = static_cast<size_t>(program.program.numbers());
   const size_t fields = numbers * particles.particles.size();
-  const size_t bonds = program.rows ? program.rows->other.size() : 0;
-  if (memory.size() != fields + bonds * static_cast<size_t>(program.program.bond_numbers()))
+  if (memory.size() != program_words(program, particles.particles.size()))
     throw InputError("the checkpoint does not hold the fields of this rule");
   for (const Particle& particle : particles.particles)
     for (size_t f = 0; f < numbers; ++f)
@@ -92,7 +97,12 @@ void IntegerRun::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   look();
 }
 
-EngineMemory IntegerRun::memory() { return {program_->clocks(), program_memory(program_->state())}; }
+EngineMemory IntegerRun::memory() {
+  std::vector<uint64_t> own = program_memory(program_->state());
+  const std::vector<uint64_t> clocks = program_->clocks();
+  own.insert(own.end(), clocks.begin(), clocks.end());
+  return {{}, std::move(own)};
+}
 
 Momentum IntegerRun::momentum() {
   return {cuboct::momentum(setting_.fixed, program_->state()), RoundsRun::momentum().real};
@@ -216,8 +226,9 @@ void IntegerRun::follow(RealEngine& reference) {
 }
 
 Counters IntegerRun::counters_of_state() {
+  if (!setting_.program.rows) return {};
   body();
-  return setting_.program.rows && leads() ? RoundsRun::counters_of_state() : Counters();
+  return leads() ? RoundsRun::counters_of_state() : Counters();
 }
 
 Notes IntegerRun::notes() {

@@ -44,7 +44,7 @@ class IntegerRun final : public RoundsRun {
   void for_each_slot(const std::function<void(const Particle&)>& see) override {
     program_->for_each_slot(see);
   }
-  // The fields of all particles by id, then the numbers of all bonds.
+  // The fields of all particles by id, then the numbers of all bonds, then the engine's clocks.
   EngineMemory memory() override;
 
  private:
@@ -66,6 +66,8 @@ class IntegerRun final : public RoundsRun {
 State program_beginning(const Scene& scene, const ProgramSetting& setting);
 // What a checkpoint keeps of a state besides its particles: EngineMemory::own.
 std::vector<uint64_t> program_memory(const State& state);
+// Its words. Behind them EngineMemory::own has IntegerEngine::clocks.
+size_t program_words(const IntegerProgram& program, size_t particles);
 // The state that a checkpoint holds: `particles` in the order of their slots, `memory` as IntegerRun left it.
 State state_of_checkpoint(State particles, const IntegerProgram& program,
                           const std::vector<uint64_t>& memory);

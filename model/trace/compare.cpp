@@ -38,6 +38,12 @@ std::optional<Mismatch> compare_stops(const std::optional<StopReason>& a,
 
 std::optional<Mismatch> compare_cycles(const Trace& a, const Trace& b) {
   if (a.cycles.empty() || b.cycles.empty()) return std::nullopt;
+  if (a.rounds != b.rounds) {
+    Mismatch mismatch = found(Mismatch::Kind::cycles, fmt::format("{} rounds", a.rounds),
+                              fmt::format("{} rounds", b.rounds));
+    mismatch.field = "number";
+    return mismatch;
+  }
   const auto at = [&](size_t i, const char* edge, uint64_t value_a, uint64_t value_b) {
     Mismatch mismatch = found(Mismatch::Kind::cycles, std::to_string(value_a), std::to_string(value_b));
     mismatch.step = i / a.phases() / a.nodes;

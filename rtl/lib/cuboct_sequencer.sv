@@ -27,7 +27,7 @@ module cuboct_sequencer #(
   output logic [1:0]  axis_o,           // of exchange or migration, else 0
   output logic [Axes-1:0] onehot_o,     // axis_o, one bit each
   output logic        engine_o,         // the force engine runs
-  output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this step is over; only while the engine runs
+  output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this round is over; only while the engine runs
   output logic        step_end_o,       // last cycle of the last migration phase
   output logic [Phases-1:0] phase_start_o,  // first cycle of exchange x y z, force, update by round, of migrate x y z
   output logic [Phases-1:0] phase_end_o

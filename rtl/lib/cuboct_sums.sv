@@ -3,7 +3,7 @@
 // accepted in cycle t counts from t+1 on. Taking a sum clears it. Where kicks never come in two cycles after one
 // another (Spaced) the sums lie in a memory whose word is asked for a cycle ahead.
 module cuboct_sums #(
-  parameter int Axes     = 3,   // 2 or 3
+  parameter int Axes     = 3,   // components of a kick, >= 1
   parameter int KickBits = 18,  // of one axis of a kick
   parameter int SumBits  = 28,  // of one axis of a sum, >= KickBits + clog2(3^Axes * Capacity)
   parameter int Capacity = 16,

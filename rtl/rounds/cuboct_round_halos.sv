@@ -13,7 +13,6 @@ module cuboct_round_halos #(
   parameter logic [Rounds*16-1:0] RecordBits = {Rounds{16'd62}},  // by round: of a record on the link
   parameter int HaloBits      = 62,   // of the first round's record
   parameter int MostBits      = 62,   // of any round's
-  parameter int LaterBits     = 62,   // of all later rounds' together; 1 where there is none
   parameter int CandidateBits = 126,
   parameter int ParticleBits  = 128,
   parameter int AddrBits      = 8,    // of a record's number in any segment
@@ -199,5 +198,5 @@ module cuboct_round_halos #(
     for (g = 0; g < Faces; g = g + 1) relay_data_o = relay_data_o | relayed[g*Rounds*MostBits +: Rounds*MostBits];
   end
   logic unused_sizes;
-  assign unused_sizes = ^{relay_read_i, relay_clear_i, relay_addr_i, LaterBits[0]};
+  assign unused_sizes = ^{relay_read_i, relay_clear_i, relay_addr_i};
 endmodule

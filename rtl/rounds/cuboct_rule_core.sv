@@ -181,7 +181,7 @@ module cuboct_rule_core #(
   logic [ParticleBits-1:0]           arrived;  // the oldest of the face that migration takes from
   cuboct_round_halos #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .Rounds(Rounds),
-    .RecordBits(RecordBits), .HaloBits(HaloBits), .MostBits(MostBits), .LaterBits((LaterBits > 0) ? LaterBits : 1),
+    .RecordBits(RecordBits), .HaloBits(HaloBits), .MostBits(MostBits),
     .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_halos (
     .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .halo_clear_i(last_force),
