@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "hw/engine/engine_kind.h"
 #include "hw/engine/scene_engine.h"
 #include "hw/program/options.h"
 #include "model/run/start.h"
@@ -46,6 +47,19 @@ std::string whole_number(const std::string& text) {
 Loaded load(const Input& input) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
   loaded.setup = make_setup(loaded.scene, read_arch(input.arch));
+  return loaded;
+}
+
+Loaded load_machine(const Input& input) {
+  Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
+  const Scene& scene = loaded.scene;
+  const Arch arch = read_arch(input.arch);
+  if (scene.rule.rounds == nullptr) {
+    loaded.setup = make_setup(scene, arch);
+    return loaded;
+  }
+  loaded.setup.plan = program_plan_of(scene, arch, CellForm::cubes);
+  with_places(scene, arch, [&] { loaded.setup.initial = begin_of(scene, loaded.setup.plan, nullptr); });
   return loaded;
 }
 

@@ -14,6 +14,8 @@
 #include "hw/rtl/rtl_prefix.h"
 #include "model/base/json.h"
 #include "model/base/text.h"
+#include "model/rules/rounds_rule.h"
+#include "model/run/start.h"
 #include "model/run/static_engine.h"
 
 namespace cuboct {
@@ -55,7 +57,7 @@ struct EmitOptions {
 };
 
 Items emit_one(const EmitOptions& options) {
-  const Loaded loaded = load(options.input);
+  const Loaded loaded = load_machine(options.input);
   refuse_static(loaded.scene, "hardware");
   const Plan& plan = loaded.setup.plan;
   check_held(loaded.scene, plan);
@@ -63,9 +65,9 @@ Items emit_one(const EmitOptions& options) {
   with_places(loaded.scene, plan.arch, [&] {
     check_emit_directory(options.out);
     Emission emission = options.emission;
+    check_emission(plan, emission);  // synthesis and the counting of cycles take long
     if (!emission.board.name.empty() && !options.unchecked)
       check_board(options.input, plan, loaded.setup.initial, emission.board);
-    check_emission(plan, emission);  // cycles are counted for long
     emission.arch = text_of(plan.arch);
     emission.counted = counted = count_cycles(plan, loaded.setup.initial, loaded.scene.steps);
     emit_rtl(plan, loaded.setup.initial, options.out, emission);
@@ -85,7 +87,7 @@ void emit_stages(const EmitOptions& options, const std::vector<StageName>& names
     one.input.stage = names[k].name;
     one.input.from = k > 0 ? stage_start(options.input.from, names, k) : "";
     one.out = options.out + "/" + stage_title(names, k);
-    load(one.input);  // none is written where one cannot be
+    load_machine(one.input);  // none is written where one cannot be
     check_emit_directory(one.out);
   }
   std::vector<std::string> told;
@@ -107,6 +109,8 @@ void emit(EmitOptions options) {
     if (!options.input.stage.empty() || !options.input.from.empty())
       throw InputError("--fit chooses a machine for a scene that begins with its packing",
                        "emit without --fit takes --stage and --from");
+    const Scene scene = load_scene(options.input.scene, {});
+    with_places(scene, read_arch(options.input.arch), [&] { refuse_rounds(scene.rule, "--fit"); });
     emit_fitted(options.input, options.fit, options.out, options.emission, options.answer);
     return;
   }

@@ -32,17 +32,19 @@ std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint
   emu::TimingModel timing(plan, 0);
   try {
     emu::LatticeEngine engine(plan, initial.step, plan.particles,
-                              [&](uint32_t k) { return initial.particles[k]; }, {});
+                              [&](uint32_t k) { return initial.particles[k]; }, {},
+                              {initial.fields, initial.bonds});  // of an initial state in the order of ids
     emu::CellSlots slots;
-    emu::KickCounter kicks(plan, 0);
+    std::optional<emu::KickCounter> kicks;  // of the pair law, which says which pairs are near
+    if (plan.program == nullptr) kicks.emplace(plan, 0);
     std::vector<Particle> particles;
     std::vector<PhaseSpan> spans(spans_of_step(plan));
     while (counted.steps < steps && !interrupted()) {
       engine.slots(slots);
       particles.clear();
-      engine.for_each_slot([&](const Particle& p) { particles.push_back(p); });
+      if (kicks) engine.for_each_slot([&](const Particle& p) { particles.push_back(p); });
       engine.step();
-      kicks.add(particles, run.nodes);
+      if (kicks) kicks->add(particles, run.nodes);
       timing.step(slots, engine.leaving(), spans);
       uint64_t end = 0;  // the slowest node's
       for (const PhaseSpan& span : spans) end = std::max(end, span.end + 1);

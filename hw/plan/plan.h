@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -95,6 +96,9 @@ Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, u
 void set_program(Plan& plan, std::shared_ptr<const IntegerProgram> program);
 // Why the machine that the plan describes does not run its rule: one line for people. Empty where it does.
 std::string machine_refusal(const Plan& plan);
+
+// The lines of `describe` that tell of a plan's program: its fields, and what each round sends and takes.
+void describe_rounds(const Plan& plan, const std::function<void(const char*, const std::string&)>& line);
 
 // Phase spans of a step of the machine: of all its nodes.
 size_t spans_of_step(const Plan& plan);

@@ -73,4 +73,21 @@ std::string machine_refusal(const Plan& plan) {
   return "";
 }
 
+void describe_rounds(const Plan& plan, const std::function<void(const char*, const std::string&)>& line) {
+  const graph::FixedProgram& program = plan.program->program;
+  line("rule", fmt::format("{}, {} round{}", program.name, program.rounds.size(),
+                           program.rounds.size() == 1 ? "" : "s"));
+  std::string fields;
+  for (const graph::Field& field : program.fields)
+    fields += fmt::format("{}{} of {} number{}", fields.empty() ? "" : ", ", field.name, field.numbers,
+                          field.numbers == 1 ? "" : "s");
+  line("fields", fields.empty() ? "none" : fields);
+  for (size_t k = 0; k < plan.rounds.size(); ++k) {
+    const PlanRound& round = plan.rounds[k];
+    line(fmt::format("round {}", k + 1).c_str(),
+         fmt::format("record of {} bits in {} beat{} of {}; pipe {}, finish {} cycles", bits_of(round.record),
+                     round.beats, round.beats == 1 ? "" : "s", plan.words.link_bits, round.pipe, round.finish));
+  }
+}
+
 }  // namespace cuboct

@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <vector>
 
 #include "hw/rtl/rtl_ports.h"
 #include "hw/rtl/rtl_template.h"
 #include "model/contract/golden.h"
+#include "model/program/integer_program.h"
 #include "model/trace/trace.h"
 
 namespace cuboct {
@@ -132,7 +134,7 @@ module cuboct_bench;
         if (step == Steps && last[k] < 0) last[k] = next[k];
         next[k] = next[k] + 1;
       end
-      if (probe_phase_end[8*k+@LAST@]) phases = phases + 1;
+      if (probe_phase_end[@PHASES@*k+@LAST@]) phases = phases + 1;
     end
     if (cycle > 0 && idle) begin
       for (k = 0; k < Nodes; k = k + 1) if (next[k] != first[k+1]) begin
@@ -192,7 +194,7 @@ module cuboct_bench;
   end
 
   logic unused_phases;
-  assign unused_phases = ^{probe_phase_start, settled, fault_valid, fault_code, fault_id, fault_number@UNUSED@};
+  assign unused_phases = ^{probe_phase_start, settled, fault_valid, fault_code, @STAGE@fault_id, fault_number@UNUSED@};
 endmodule
 )sv";
 
@@ -247,8 +249,7 @@ A lattice of @NODES@ particle processors in SystemVerilog, self-contained.
 | file | what |
 |---|---|
 | `rtl/cuboct_pkg.sv` | the plan's constants |
-| `rtl/cuboct_*_rom.sv` | its tables |
-| `rtl/cuboct_node.sv` | one node |
+@LAW_ROWS@| `rtl/cuboct_node.sv` | one node |
 | `rtl/cuboct_lattice.sv` | the nodes and their links: the top module |
 | other files of `rtl/` | the library that they use |
 | `files.f` | all of them, in the order to read |
@@ -308,15 +309,58 @@ std::string port_rows(const RtlDesign& design) {
   return rows;
 }
 
+// What a number of a rule's field is: its name there, and what one is worth.
+std::string field_meaning(const IntegerProgram& program, int number) {
+  const std::vector<graph::Field>& fields = program.program.fields;
+  size_t k = 0;
+  while (number >= fields[k].numbers) number -= fields[k++].numbers;
+  const std::string part = fields[k].numbers > 1 ? fmt::format(".{}", "xyz"[number]) : "";
+  const FieldScale& scale = program.scales[k];
+  return fmt::format("`{}{}` of the rule, times {:.6g} in SI units", fields[k].name, part,
+                     std::ldexp(scale.unit, -scale.frac));
+}
+
 std::string field_rows(const Plan& plan) {
   std::string rows;
-  for (const WordField& f : plan.words.particle)
-    rows += fmt::format("| `{}` | {} | {} | {} |\n", name_of(f), f.lsb, f.bits, f.is_signed ? "signed" : "");
+  for (const WordField& f : plan.words.particle) {
+    std::string meaning = f.is_signed ? "signed" : "";
+    if (f.kind == FieldKind::field)
+      meaning += (f.is_signed ? "; " : "") + field_meaning(*plan.program, f.number);
+    rows += fmt::format("| `{}` | {} | {} | {} |\n", name_of(f), f.lsb, f.bits, meaning);
+  }
   return rows;
 }
 
+// The files of rtl/ that hold what the plan's law or rule computes.
+const char* law_rows(const RtlDesign& design) {
+  return design.text ? "| `rtl/cuboct_pair_K.sv`, `rtl/cuboct_finish_K.sv` | what round K computes of a pair, and of a "
+                       "particle |\n"
+                       "| `rtl/cuboct_rule_*.sv` | the rounds together, and what others see of a particle |\n"
+                     : "| `rtl/cuboct_*_rom.sv` | its tables |\n";
+}
+
+// A state as the bench holds it: golden's particles by cell, and of a rule the numbers of its fields by id.
+class Shown {
+ public:
+  Shown(const Plan& plan, const Golden& golden) : golden_(golden) {
+    if (plan.program == nullptr) return;
+    numbers_ = static_cast<size_t>(plan.program->program.numbers());
+    fields_ = golden.state().fields;
+  }
+  const std::vector<Particle>& of(uint32_t cell) const { return golden_.cells()[cell]; }
+  int64_t field(uint32_t id, int number) const {
+    return fields_[id * numbers_ + static_cast<size_t>(number)];
+  }
+
+ private:
+  const Golden& golden_;
+  size_t numbers_ = 0;
+  std::vector<int64_t> fields_;
+};
+
 // {above, particle}; above are 32-bit words, least significant first.
-std::string particle_hex(const Plan& plan, const Particle& particle, std::initializer_list<uint64_t> above) {
+std::string particle_hex(const Plan& plan, const Shown& state, const Particle& particle,
+                         std::initializer_list<uint64_t> above) {
   BitWord word;
   for (const WordField& f : plan.words.particle) {
     const auto value = [&]() -> int64_t {
@@ -333,8 +377,9 @@ std::string particle_hex(const Plan& plan, const Particle& particle, std::initia
           return particle.id;
         case FieldKind::displacement:
           return particle.u[f.axis];
-        case FieldKind::away:
         case FieldKind::field:
+          return state.field(particle.id, f.number);
+        case FieldKind::away:
         case FieldKind::bond_other:
         case FieldKind::bond_kind:
         case FieldKind::bond_field:
@@ -384,7 +429,10 @@ std::string print_fields(const Plan& plan, int& id_lsb) {
 std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design,
                                                const State& initial, uint64_t steps) {
   const uint32_t nodes = plan.nodes();
-  Golden golden(plan.rule, plan.lattice, plan.arch.capacity, initial);
+  Golden golden =
+      plan.program == nullptr
+          ? Golden(plan.rule, plan.lattice, plan.arch.capacity, initial)
+          : Golden(plan.program->program, plan.lattice, plan.arch.capacity, initial, plan.program->rows);
   std::string loads;
   const bool bricks = design.bricks();
   const auto of_node = [&](uint32_t n) {
@@ -394,17 +442,19 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
       if (const uint32_t cell = plan.bricks.cell(n, local); cell != kNoCell) cells.emplace_back(cell, local);
     return cells;
   };
+  const Shown begin(plan, golden);
   for (uint32_t n = 0; n < nodes; ++n)
     for (const auto& [cell, local] : of_node(n))
-      for (const Particle& p : golden.cells()[cell])
-        loads += bricks ? particle_hex(plan, p, {n, local}) : particle_hex(plan, p, {n});
+      for (const Particle& p : begin.of(cell))
+        loads += bricks ? particle_hex(plan, begin, p, {n, local}) : particle_hex(plan, begin, p, {n});
   std::vector<std::string> expected(nodes);
   std::vector<uint64_t> count(nodes);
   for (uint64_t step = 0;; ++step) {
+    const Shown now(plan, golden);
     for (uint32_t n = 0; n < nodes; ++n)
       for (const auto& [cell, local] : of_node(n))
-        for (size_t slot = 0; slot < golden.cells()[cell].size(); ++slot, ++count[n])
-          expected[n] += particle_hex(plan, golden.cells()[cell][slot], {uint64_t{local} << 16 | slot, step});
+        for (size_t slot = 0; slot < now.of(cell).size(); ++slot, ++count[n])
+          expected[n] += particle_hex(plan, now, now.of(cell)[slot], {uint64_t{local} << 16 | slot, step});
     if (step == steps) break;
     golden.step();
   }
@@ -418,13 +468,17 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
   first += fmt::format("{:08x}\n", total);
   if (initial.particles.empty()) throw InputError("RTL: the bench needs a particle");
 
-  // No step takes longer: every record that there can be sent three times, met by every row, every pair
-  // issued alone.
+  // No step takes longer: in every round, every record that there can be sent three times, met by every row,
+  // every pair issued alone.
   const auto c = static_cast<uint64_t>(plan.arch.capacity);
   const uint64_t records = std::min<uint64_t>(27 * c, initial.particles.size());
-  const auto beats = static_cast<uint64_t>(std::max(plan.words.halo_beats, plan.words.migrate_beats));
   const uint64_t cells = cells_of(plan.bricks.shape());
-  const uint64_t longest = (steps + 2) * (4 * records * beats + 2 * c * records + 300) * cells;
+  uint64_t longest = 0;
+  for (const PlanRound& round : plan.rounds) {
+    const auto beats = static_cast<uint64_t>(std::max(round.beats, plan.words.migrate_beats));
+    const auto latencies = static_cast<uint64_t>(std::max(300, 200 + round.pipe + round.finish));
+    longest += (steps + 2) * (4 * records * beats + 2 * c * records + latencies) * cells;
+  }
   const uint64_t limit = std::min<uint64_t>(longest, INT32_MAX);  // what an int holds
 
   std::map<std::string, std::string> files;
@@ -467,7 +521,10 @@ std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign
       {"BACK", std::to_string(levels > 0 ? levels + 1 : 0)},
       {"OWN_PORTS", print_ports(own)},
       {"OWN_PINS", fmt::format("{}", fmt::join(pins, ",\n"))},
-      {"LAST", std::to_string(static_cast<int>(last_phase(plan.rule.axes)))},
+      {"LAST", std::to_string(phase_index(last_phase(plan.rule.axes), 0, design.rounds))},
+      {"PHASES", std::to_string(phases_of(design.rounds))},
+      {"STAGE", design.text ? "fault_stage, probe_fault_stage, " : ""},
+      {"LAW_ROWS", law_rows(design)},
       {"SIGNALS", signals},
       {"PORTS", fmt::format("{}", fmt::join(connections, ",\n"))},
       {"VELOCITY",

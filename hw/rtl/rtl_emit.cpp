@@ -23,6 +23,7 @@
 #include "hw/rtl/rule_datapath.h"
 #include "model/base/directory_lock.h"
 #include "model/base/output.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct {
 namespace {
@@ -38,6 +39,11 @@ constexpr const char* kMarker = ".cuboct-emit";
 RtlDesign design_of(const Plan& plan) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
+  if (plan.program && plan.program->rows)
+    throw InputError(fmt::format("RTL: the rule '{}' has bonds that last, and no node in SystemVerilog holds their rows",
+                                 plan.program->program.name),
+                     "engines golden, lattice and systemc run it")
+        .about({"rule.file", "rule"});
   RtlDesign design = decide(plan);
   if (plan.program) design.rule = rule_parameters(plan);
   return design;
@@ -92,7 +98,7 @@ std::string alone(std::string_view page) {
 void add_pages(Files& files, const RtlDesign& design, bool host) {
   for (const RtlSource& page : rtl_pages())
     if (page.name == "node.md" || (page.name == "links.md" && design.checked) ||
-        (page.name == "board.md" && host))
+        (page.name == "board.md" && host) || (page.name == "pipeline.md" && design.text))
       files["docs/reference/" + std::string(page.name)] = alone(page.text);
 }
 
@@ -170,6 +176,12 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
                           "leave out [boards]; 'cuboct run --engine rtl' clocks the whole machine with it");
   RtlDesign design = design_of(plan);
   legalise(design, true);
+  if (design.text && (!board.name.empty() || !board.bus.empty()))
+    throw InputError(fmt::format("{}: a host's link serves the pair law alone, and the scene has the rule '{}'",
+                                 board.bus.empty() ? "--board " + board.name : "--bus " + board.bus,
+                                 plan.program->program.name),
+                     "emit the lattice without it: its ports take and show the rule's particles")
+        .about({"rule.file", "rule"});
   if (!board.name.empty()) legalise_board(plan, board);
   if (!board.bus.empty()) legalise_bus(plan, board);
   if (!board.name.empty() || !board.bus.empty())

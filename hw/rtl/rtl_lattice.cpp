@@ -79,6 +79,13 @@ std::map<std::string, std::string> connections(const RtlDesign& design) {
   return all;
 }
 
+// A fault as one word, of signals whose names end in `end`.
+std::string fault_word(const RtlDesign& design, const char* end) {
+  return fmt::format("{{fault_number{0}, {1}fault_id{0}, {2}fault_code{0}}}", end,
+                     design.bricks() ? fmt::format("fault_cell{}, ", end) : "",
+                     design.text ? fmt::format("fault_stage{}, ", end) : "");
+}
+
 // The signals of one node and what its neighbours drive.
 std::string print_links(const RtlDesign& design) {
   const int faces = 2 * design.axes;
@@ -147,8 +154,6 @@ std::string print_node_in_loop(const RtlDesign& design) {
                                  fmt::join(fields, ", "));
   text += fmt::format("    cuboct_node u_node (\n{}\n    );\n", fmt::join(lines, ",\n"));
   const char* particle = design.bricks() ? "{observe_cell, observe_data}" : "observe_data";
-  const char* fault = design.bricks() ? "{fault_number, fault_cell, fault_id, fault_code}"
-                                      : "{fault_number, fault_id, fault_code}";
   text += fmt::format(
       "    cuboct_watch #(.ParticleBits(WordBits), .FaultBits(FaultBits), .Delay((Nodes > 1) ? 1 : 0)) "
       "u_watch (\n"
@@ -158,7 +163,7 @@ std::string print_node_in_loop(const RtlDesign& design) {
       "      .flags_o(node_flags[4*n +: 4]), .data_o(node_data[n*(FaultBits+WordBits) +: "
       "FaultBits+WordBits])\n"
       "    );\n",
-      particle, fault);
+      particle, fault_word(design, ""));
   std::string probes, unused;
   for (const RtlPort& p : lattice_ports(design)) {
     if (!p.name.starts_with("probe_")) continue;
@@ -200,12 +205,12 @@ std::string print_lattice(const RtlDesign& design) {
       "  localparam int LinkBits    = cuboct_pkg::{};\n{}"
       "  localparam int NodeBits    = {};\n"
       "  localparam int WordBits    = cuboct_pkg::ParticleBits{};\n"
-      "  localparam int FaultBits   = 4 + cuboct_pkg::IdBits{} + 64;\n"
+      "  localparam int FaultBits   = {} + cuboct_pkg::IdBits{} + 64;\n"
       "  localparam int CommandBits = {}32 + WordBits;\n"
       "  localparam int Groups      = (Nodes + 7) / 8;\n",
       nodes, print_ports(lattice_ports(design)), design.checked ? "WireBits" : "LinkBits",
       design.checked ? "  localparam int AckBits     = cuboct_pkg::AckBits;\n" : "", node_bits,
-      bricks ? " + cuboct_pkg::CellBits" : "", bricks ? " + cuboct_pkg::CellBits" : "",
+      bricks ? " + cuboct_pkg::CellBits" : "", design.text ? 8 : 4, bricks ? " + cuboct_pkg::CellBits" : "",
       moved ? fmt::format("{} + ", velocities_bits(design)) : "");
   text += fmt::format(
       "  // By node and face (-x, +x, -y, +y{}), -x of node 0 in the lowest place: the neighbour; Nodes "
@@ -233,12 +238,12 @@ std::string print_lattice(const RtlDesign& design) {
       "    .clk_i, .rst_ni, .start_i, .load_valid_i, .select_i, .node_i,\n"
       "    .command_i({{{}steps_i, {}load_data_i}}),\n"
       "    .settled_o, .busy_o, .idle_o, .faulty_o, .fault_valid_o,\n"
-      "    .fault_o({{fault_number_o, {}fault_id_o, fault_code_o}}), .observe_valid_o,\n"
+      "    .fault_o({}), .observe_valid_o,\n"
       "    .observe_data_o({}),\n"
       "    .node_start_o(node_start), .node_load_o(node_load), .node_observed_o(node_observed),\n"
       "    .node_command_o(node_command), .node_flags_i(node_flags), .node_data_i(node_data)\n"
       "  );\n",
-      moved ? "velocity_i, " : "", bricks ? "load_cell_i, " : "", bricks ? "fault_cell_o, " : "",
+      moved ? "velocity_i, " : "", bricks ? "load_cell_i, " : "", fault_word(design, "_o"),
       bricks ? "{observe_cell_o, observe_data_o}" : "observe_data_o");
   text += "\n  for (genvar n = 0; n < Nodes; n++) begin : gen_node\n" + print_links(design) +
           print_node_in_loop(design) + "  end\n";
