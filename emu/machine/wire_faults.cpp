@@ -32,8 +32,7 @@ uint64_t beats_per_step(const Plan& plan, const State& state) {
       if (plan.neighbour(n, f) == kNoNode) continue;
       beats += 1 + plan.rounds.size();  // the end beats of particles, and of each round's halo
       for (const BrickWalk::Sent& s : map.walk(n).sent[static_cast<size_t>(f)])
-        if (const uint32_t cell = map.cell(n, s.grid); cell != kNoCell)
-          beats += held[cell] * record_beats;
+        if (const uint32_t cell = map.cell(n, s.grid); cell != kNoCell) beats += held[cell] * record_beats;
     }
   return beats;
 }

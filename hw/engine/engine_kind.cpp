@@ -62,7 +62,8 @@ State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
   State state = checked_state(*from, plan);
   if (!plan.program) return state;
   std::vector<uint64_t> own = from->head().engine.own;
-  if (from->head().cycles) own.resize(std::min(own.size(), program_words(*plan.program, state.particles.size())));
+  if (from->head().cycles)
+    own.resize(std::min(own.size(), program_words(*plan.program, state.particles.size())));
   return state_of_checkpoint(std::move(state), *plan.program, own);
 }
 

@@ -86,7 +86,8 @@ void describe_rounds(const Plan& plan, const std::function<void(const char*, con
     const PlanRound& round = plan.rounds[k];
     line(fmt::format("round {}", k + 1).c_str(),
          fmt::format("record of {} bits in {} beat{} of {}; pipe {}, finish {} cycles", bits_of(round.record),
-                     round.beats, round.beats == 1 ? "" : "s", plan.words.link_bits, round.pipe, round.finish));
+                     round.beats, round.beats == 1 ? "" : "s", plan.words.link_bits, round.pipe,
+                     round.finish));
   }
 }
 

@@ -40,9 +40,10 @@ RtlDesign design_of(const Plan& plan) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
   if (plan.program && plan.program->rows)
-    throw InputError(fmt::format("RTL: the rule '{}' has bonds that last, and no node in SystemVerilog holds their rows",
-                                 plan.program->program.name),
-                     "engines golden, lattice and systemc run it")
+    throw InputError(
+        fmt::format("RTL: the rule '{}' has bonds that last, and no node in SystemVerilog holds their rows",
+                    plan.program->program.name),
+        "engines golden, lattice and systemc run it")
         .about({"rule.file", "rule"});
   RtlDesign design = decide(plan);
   if (plan.program) design.rule = rule_parameters(plan);
@@ -177,10 +178,11 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
   RtlDesign design = design_of(plan);
   legalise(design, true);
   if (design.text && (!board.name.empty() || !board.bus.empty()))
-    throw InputError(fmt::format("{}: a host's link serves the pair law alone, and the scene has the rule '{}'",
-                                 board.bus.empty() ? "--board " + board.name : "--bus " + board.bus,
-                                 plan.program->program.name),
-                     "emit the lattice without it: its ports take and show the rule's particles")
+    throw InputError(
+        fmt::format("{}: a host's link serves the pair law alone, and the scene has the rule '{}'",
+                    board.bus.empty() ? "--board " + board.name : "--bus " + board.bus,
+                    plan.program->program.name),
+        "emit the lattice without it: its ports take and show the rule's particles")
         .about({"rule.file", "rule"});
   if (!board.name.empty()) legalise_board(plan, board);
   if (!board.bus.empty()) legalise_bus(plan, board);

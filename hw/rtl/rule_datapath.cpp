@@ -104,8 +104,8 @@ class Datapath {
     return {of, f.lsb, f.bits, f.is_signed};
   }
   Slice other(const std::string& of, FieldKind kind, int axis = -1) const {
-    const auto f = std::ranges::find_if(
-        others_, [&](const WordField& g) { return g.kind == kind && g.axis == axis; });
+    const auto f =
+        std::ranges::find_if(others_, [&](const WordField& g) { return g.kind == kind && g.axis == axis; });
     return {of, f->lsb, f->bits, f->is_signed};
   }
   // What a round has of a field: as the last round sent it that did so.

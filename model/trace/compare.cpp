@@ -39,8 +39,8 @@ std::optional<Mismatch> compare_stops(const std::optional<StopReason>& a,
 std::optional<Mismatch> compare_cycles(const Trace& a, const Trace& b) {
   if (a.cycles.empty() || b.cycles.empty()) return std::nullopt;
   if (a.rounds != b.rounds) {
-    Mismatch mismatch = found(Mismatch::Kind::cycles, fmt::format("{} rounds", a.rounds),
-                              fmt::format("{} rounds", b.rounds));
+    Mismatch mismatch =
+        found(Mismatch::Kind::cycles, fmt::format("{} rounds", a.rounds), fmt::format("{} rounds", b.rounds));
     mismatch.field = "number";
     return mismatch;
   }
