@@ -19,11 +19,11 @@ module cuboct_least_fault #(
   input  logic [Sources*IdBits-1:0] id_i,             // of the particle
   input  logic [Sources*64-1:0]     number_i,         // signed
   input  logic                      update_valid_i,   // a fault of the update
-  input  logic [CodeBits-1:0]       update_code_i,    // 3 to 5
+  input  logic [CodeBits-1:0]       update_code_i,    // 3 to 5, or with a stage
   input  logic [IdBits-1:0]         update_id_i,      // of the particle
   input  logic [63:0]               update_number_i,  // signed
   input  logic                      move_valid_i,     // a fault of migration
-  input  logic [CodeBits-1:0]       move_code_i,      // 6 to 11, none below an earlier one of the step
+  input  logic [CodeBits-1:0]       move_code_i,      // 6 to 11, or with a stage; none below an earlier one of the step
   input  logic [IdBits-1:0]         move_id_i,        // of the particle
   input  logic [63:0]               move_number_i,    // one for each code, >= 0
   output logic                      valid_o,          // with clear_i: there was one in the step

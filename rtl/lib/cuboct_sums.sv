@@ -5,16 +5,16 @@
 module cuboct_sums #(
   parameter int Axes     = 3,   // components of a kick, >= 1
   parameter int KickBits = 18,  // of one axis of a kick
-  parameter int SumBits  = 28,  // of one axis of a sum, >= KickBits + clog2(3^Axes * Capacity)
+  parameter int SumBits  = 28,  // of one component of a sum, that hold every partial sum
   parameter int Capacity = 16,
   parameter int Spaced   = 0,   // 0, 1
-  parameter int Adds     = 0,   // 1: push_i is the kick itself
+  parameter int Adds     = 0,   // 0, 1
   parameter int SlotBits = 4    // of a slot's number, >= clog2(Capacity)
 ) (
   input  logic                  clk_i,
   input  logic                  rst_ni,
   input  logic                  kick_valid_i, // a kick is added to the sum of slot next_slot_i of the cycle before
-  input  logic [Axes*KickBits-1:0] push_i,     // minus the kick
+  input  logic [Axes*KickBits-1:0] push_i,     // minus the kick; with Adds the kick
   input  logic [SlotBits-1:0]   next_slot_i,  // the slot that the next cycle's kick or take is about
   input  logic                  take_i,       // clears that sum; never with a kick
   output logic [Axes*SumBits-1:0] sum_o         // of the cycle before's slot; if Spaced, not in the cycle after a kick

@@ -9,72 +9,13 @@
 #include "emu/systemc/node.h"
 #include "model/program/integer_program.h"
 #include "model/run/integer_run.h"
+#include "tests/backend/bond_cases.h"
 #include "tests/backend/clocked_timing.h"
 #include "tests/backend/engines.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
-
-constexpr const char* kGlass = R"toml(density = "2440 kg/m^3"
-[rule]
-file = "texts/glass.toml"
-parameters = { youngs_modulus = "72 GPa", poissons_ratio = 0.22 }
-let.critical_stretch = 0.00091
-start.whole = "not ((x_i.y - 1.2 mm) * (x_i.y + d0.y - 1.2 mm) < 0 and x_i.x + d0.x / 2 < 1 mm)"
-[packing]
-pitch = "1 mm"
-[geometry]
-shape = "box"
-min = "[0, 0, 0] mm"
-max = "[3.5, 3, 2] mm"
-[run]
-dt = "0.04 us"
-steps = 1
-)toml";
-
-constexpr const char* kPlastic = R"toml(density = "1.41 g/cm^3"
-[rule]
-file = "texts/plastic.toml"
-[packing]
-pitch = "1 mm"
-[geometry]
-shape = "box"
-min = "[0, 0, 0] mm"
-max = "[3.5, 3, 2] mm"
-[run]
-dt = "0.2 us"
-steps = 1
-)toml";
-
-struct Motion {
-  Vec3 together = Vec3::Zero();  // m/s
-  double random = 0;             // m/s, at most, along each axis
-  double growth = 0;             // of the body in a step, of its size
-  bool flat = false;             // nothing along z
-};
-
-struct Body {
-  Case c;
-  Body(const std::string& text, const Motion& motion, const Arch& arch, uint64_t steps = 8) {
-    c.name = "bonds", c.steps = steps;
-    c.scene = parse_scene(text, CUBOCT_SOURCE_DIR "/scenes/rules/small.toml");
-    std::mt19937_64 random(1);
-    std::uniform_real_distribution<double> any(-motion.random, motion.random);
-    Vec3 middle = Vec3::Zero();
-    for (const Vec3& x : c.scene.body.x) middle += x / static_cast<double>(c.scene.body.size());
-    c.scene.body.v.clear();
-    for (const Vec3& x : c.scene.body.x)
-      c.scene.body.v.push_back(motion.together + motion.growth / c.scene.rule.dt * (x - middle) +
-                               Vec3(any(random), any(random), any(random)));
-    if (motion.flat)
-      for (Vec3& v : c.scene.body.v) v.z() = 0;
-    c.scene.reach_margin = Vec3::Constant(2e-3);
-    const Plan& plan = c.setup.plan = program_plan_of(c.scene, arch, CellForm::cubes);
-    c.setup.initial =
-        program_beginning(c.scene, {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity});
-  }
-};
 
 // What the stimuli contained. All particles have bonds, so those that migrate take them along.
 struct Counts {
@@ -234,11 +175,6 @@ TEST(BondNodes, ThatAreLostAreTheFaultOfGolden) {
       if (HasFatalFailure()) return;
     }
   EXPECT_EQ(counts.faults, std::vector<Fault>(2 * machines().size(), Fault::bond_lost));
-}
-
-// Four particles, at the corners of a tetrahedron, with a bond between each two.
-std::string of_four(const std::string& text) {
-  return replaced(text, "[3.5, 3, 2] mm", "[1.1, 1.1, 1.1] mm");
 }
 
 TEST(BondNodes, ThatAreBrokenMayBeAnywhereAndOthersMayNot) {
