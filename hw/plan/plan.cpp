@@ -246,16 +246,16 @@ std::string describe(const Plan& plan) {
     describe_rounds(plan, line);
   } else {
     line("table",
-       fmt::format("{} entries of {} bits, {}, degree {}, scaled by 2^{}", t.c0.size(), w.strength_bits,
-                   t.shape == TableShape::uniform ? std::string("uniform in r^2")
-                                                  : fmt::format("{} per octave of r^2", 1 << t.bin_bits),
-                   t.degree, t.value_frac));
-  line("worst force error", fmt::format("{:.3g} N at r = {:.6g} m ({:.3g} of the largest force)",
-                                        r.error().worst_force, r.error().at, r.error().relative));
+         fmt::format("{} entries of {} bits, {}, degree {}, scaled by 2^{}", t.c0.size(), w.strength_bits,
+                     t.shape == TableShape::uniform ? std::string("uniform in r^2")
+                                                    : fmt::format("{} per octave of r^2", 1 << t.bin_bits),
+                     t.degree, t.value_frac));
+    line("worst force error", fmt::format("{:.3g} N at r = {:.6g} m ({:.3g} of the largest force)",
+                                          r.error().worst_force, r.error().at, r.error().relative));
   }
   if (plan.program == nullptr)
     line("halo record", fmt::format("{} bits in {} beat{} of {}", plan.words.halo_bits, plan.words.halo_beats,
-                                  plan.words.halo_beats == 1 ? "" : "s", plan.words.link_bits));
+                                    plan.words.halo_beats == 1 ? "" : "s", plan.words.link_bits));
   line("particle word", fmt::format("{} bits in {} beat{}", plan.words.particle_bits,
                                     plan.words.migrate_beats, plan.words.migrate_beats == 1 ? "" : "s"));
   if (const LinkCode& code = plan.link; code.checked())
@@ -279,9 +279,9 @@ std::string describe(const Plan& plan) {
                                              : ""));
   if (plan.program == nullptr)
     line("latency",
-       fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
-                   plan.latency.interval > 1 ? fmt::format(", a pair every {}", plan.latency.interval)
-                                             : std::string()));
+         fmt::format("pipe {}, update {} cycles{}", plan.latency.pipe, plan.latency.update,
+                     plan.latency.interval > 1 ? fmt::format(", a pair every {}", plan.latency.interval)
+                                               : std::string()));
   std::string out;
   if (plan.program != nullptr) return text;
   for (const auto& [used, name] : {std::pair{r.damped, "damping"}, std::pair{r.scaled, "pair scales"},

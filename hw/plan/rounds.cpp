@@ -15,10 +15,11 @@
 namespace cuboct {
 namespace {
 
-// Before a pair's graph: the memories' answer, the difference of positions and the constants. Behind it: the sum.
+// Before a pair's graph: the memories' answer, the difference of positions and the constants. Behind it: the
+// sum.
 constexpr int kPairReads = 2, kPairSum = 1;
-// Before a finish: the memories' answer, the sum over the pipes. Behind it: the slot's write, and the memory's answer
-// to who asks for it.
+// Before a finish: the memories' answer, the sum over the pipes. Behind it: the slot's write, and the
+// memory's answer to who asks for it.
 constexpr int kFinishReads = 2, kFinishWrite = 2;
 
 std::vector<PlanRound> rounds_of(const Plan& plan) {
@@ -41,8 +42,8 @@ std::vector<PlanRound> rounds_of(const Plan& plan) {
 
 void set_program(Plan& plan, std::shared_ptr<const IntegerProgram> program) {
   plan.program = std::move(program);
-  plan.words = words_of(plan.rule, plan.arch, plan.particles, &plan.program->program,
-                        plan.program->rows.get());
+  plan.words =
+      words_of(plan.rule, plan.arch, plan.particles, &plan.program->program, plan.program->rows.get());
   plan.link = link_code(plan.arch.link_check, plan.words.link_bits);
   plan.rounds = rounds_of(plan);
   Hash hash;
@@ -65,7 +66,8 @@ std::string machine_refusal(const Plan& plan) {
     return fmt::format("it has {} rounds at most, and the rule {}", kMostRounds, plan.rounds.size());
   if (!plan.bricks.one_cell()) return "nodes of bricks run the pair law alone: set brick = [1, 1, 1]";
   if (arch.narrow_memories) return "narrow memories are for the pair law alone: set memories = \"wide\"";
-  if (arch.halos == Halos::arrival) return "halos on arrival are for the pair law alone: set halos = \"phases\"";
+  if (arch.halos == Halos::arrival)
+    return "halos on arrival are for the pair law alone: set halos = \"phases\"";
   if (arch.multipliers != Multipliers::parallel)
     return "shared and serial multipliers are for the pair law alone: set multipliers = \"parallel\"";
   return "";
@@ -84,7 +86,8 @@ void describe_rounds(const Plan& plan, const std::function<void(const char*, con
     const PlanRound& round = plan.rounds[k];
     line(fmt::format("round {}", k + 1).c_str(),
          fmt::format("record of {} bits in {} beat{} of {}; pipe {}, finish {} cycles", bits_of(round.record),
-                     round.beats, round.beats == 1 ? "" : "s", plan.words.link_bits, round.pipe, round.finish));
+                     round.beats, round.beats == 1 ? "" : "s", plan.words.link_bits, round.pipe,
+                     round.finish));
   }
 }
 

@@ -333,7 +333,8 @@ std::string field_rows(const Plan& plan) {
 
 // The files of rtl/ that hold what the plan's law or rule computes.
 const char* law_rows(const RtlDesign& design) {
-  return design.text ? "| `rtl/cuboct_pair_K.sv`, `rtl/cuboct_finish_K.sv` | what round K computes of a pair, and of a "
+  return design.text ? "| `rtl/cuboct_pair_K.sv`, `rtl/cuboct_finish_K.sv` | what round K computes of a "
+                       "pair, and of a "
                        "particle |\n"
                        "| `rtl/cuboct_rule_*.sv` | the rounds together, and what others see of a particle |\n"
                      : "| `rtl/cuboct_*_rom.sv` | its tables |\n";
@@ -429,10 +430,9 @@ std::string print_fields(const Plan& plan, int& id_lsb) {
 std::map<std::string, std::string> print_bench(const Plan& plan, const RtlDesign& design,
                                                const State& initial, uint64_t steps) {
   const uint32_t nodes = plan.nodes();
-  Golden golden =
-      plan.program == nullptr
-          ? Golden(plan.rule, plan.lattice, plan.arch.capacity, initial)
-          : Golden(plan.program->program, plan.lattice, plan.arch.capacity, initial, plan.program->rows);
+  Golden golden = plan.program == nullptr ? Golden(plan.rule, plan.lattice, plan.arch.capacity, initial)
+                                          : Golden(plan.program->program, plan.lattice, plan.arch.capacity,
+                                                   initial, plan.program->rows);
   std::string loads;
   const bool bricks = design.bricks();
   const auto of_node = [&](uint32_t n) {

@@ -40,9 +40,10 @@ RtlDesign design_of(const Plan& plan) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
   if (plan.program && plan.program->rows)
-    throw InputError(fmt::format("RTL: the rule '{}' has bonds that last, and no node in SystemVerilog holds their rows",
-                                 plan.program->program.name),
-                     "engines golden, lattice and systemc run it")
+    throw InputError(
+        fmt::format("RTL: the rule '{}' has bonds that last, and no node in SystemVerilog holds their rows",
+                    plan.program->program.name),
+        "engines golden, lattice and systemc run it")
         .about({"rule.file", "rule"});
   RtlDesign design = decide(plan);
   if (plan.program) design.rule = rule_parameters(plan);
@@ -62,9 +63,9 @@ void add_node(Files& files, const RtlDesign& design, const Plan& plan) {
       "cuboct_word_inbox.sv"};
   const std::set<std::string_view> arrival{"cuboct_arrival_relay.sv", "cuboct_box.sv", "cuboct_cull.sv"};
   // What runs the pair law, and a rule of text does not need.
-  const std::set<std::string_view> law{"cuboct_node_core.sv", "cuboct_datapath.sv",  "cuboct_pipe.sv",
-                                       "cuboct_update.sv",    "cuboct_candidate.sv", "cuboct_halos.sv",
-                                       "cuboct_pair_walk.sv", "cuboct_word_halos.sv", "cuboct_word_inbox.sv",
+  const std::set<std::string_view> law{"cuboct_node_core.sv",  "cuboct_datapath.sv",   "cuboct_pipe.sv",
+                                       "cuboct_update.sv",     "cuboct_candidate.sv",  "cuboct_halos.sv",
+                                       "cuboct_pair_walk.sv",  "cuboct_word_halos.sv", "cuboct_word_inbox.sv",
                                        "cuboct_pair_table.sv", "cuboct_axis_mults.sv", "cuboct_link_rx.sv"};
   const auto used = [&](std::string_view name) {
     if (design.text && law.contains(name)) return false;
@@ -177,10 +178,11 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
   RtlDesign design = design_of(plan);
   legalise(design, true);
   if (design.text && (!board.name.empty() || !board.bus.empty()))
-    throw InputError(fmt::format("{}: a host's link serves the pair law alone, and the scene has the rule '{}'",
-                                 board.bus.empty() ? "--board " + board.name : "--bus " + board.bus,
-                                 plan.program->program.name),
-                     "emit the lattice without it: its ports take and show the rule's particles")
+    throw InputError(
+        fmt::format("{}: a host's link serves the pair law alone, and the scene has the rule '{}'",
+                    board.bus.empty() ? "--board " + board.name : "--bus " + board.bus,
+                    plan.program->program.name),
+        "emit the lattice without it: its ports take and show the rule's particles")
         .about({"rule.file", "rule"});
   if (!board.name.empty()) legalise_board(plan, board);
   if (!board.bus.empty()) legalise_bus(plan, board);

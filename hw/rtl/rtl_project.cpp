@@ -14,8 +14,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json law_json(const FixedRule& rule) {
-  return {{"types", rule.types.size()}, {"laws", rule.errors.size()},  {"damped", rule.damped},
-          {"scaled", rule.scaled},      {"weighted", rule.weighted}, {"force_held", rule.pd}};
+  return {{"types", rule.types.size()}, {"laws", rule.errors.size()}, {"damped", rule.damped},
+          {"scaled", rule.scaled},      {"weighted", rule.weighted},  {"force_held", rule.pd}};
 }
 
 Json program_json(const IntegerProgram& rule) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed>,
-// random_flat_<seed> and random_brick_<seed> are random ones, `example` the committed one, `rule` a rule of text). Behind a name
+// random_flat_<seed> and random_brick_<seed> are random ones, `example` the committed one, `rule` a rule of
+// text). Behind a name
 // ".narrow": with narrow memories;
 // ".arrival": with halos on arrival. emit_case --kinds prints names that between them have every kind of
 // node.
@@ -28,13 +29,14 @@ cuboct::test::Case example() {
 
 // Two rounds, the second of which reads what the first wrote of the other particle.
 cuboct::test::Case rule() {
-  return cuboct::test::case_of("rule",
-                               "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nreach = { margin = \"0 mm\" }\n"
-                               "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[2, 1, 1] mm\" }\n"
-                               "run = { dt = \"0.2 us\", steps = 9 }\n"
-                               "velocity = [ { thermal_speed = \"30 m/s\", seed = 3 } ]\n[rule]\n" +
-                                   cuboct::test::kTwoRounds,
-                               {}, 3);
+  return cuboct::test::case_of(
+      "rule",
+      "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nreach = { margin = \"0 mm\" }\n"
+      "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[2, 1, 1] mm\" }\n"
+      "run = { dt = \"0.2 us\", steps = 9 }\n"
+      "velocity = [ { thermal_speed = \"30 m/s\", seed = 3 } ]\n[rule]\n" +
+          cuboct::test::kTwoRounds,
+      {}, 3);
 }
 
 bool take_end(std::string& name, const std::string& end) {

@@ -109,7 +109,8 @@ TEST_F(RuleEmit, TheProjectTellsOfItsRounds) {
   }
   EXPECT_FALSE(json.at("cycles_per_step").contains("expected"));  // the pair law's alone
   for (const auto& file : json.at("files")) EXPECT_TRUE(fs::exists(root_ / file.get<std::string>())) << file;
-  for (const char* page : {"node.md", "pipeline.md"}) EXPECT_TRUE(fs::exists(root_ / "docs/reference" / page));
+  for (const char* page : {"node.md", "pipeline.md"})
+    EXPECT_TRUE(fs::exists(root_ / "docs/reference" / page));
   // Phase 22 of 23 ends a step of four rounds.
   EXPECT_NE(text("bench/cuboct_bench.sv").find("probe_phase_end[23*k+22]"), std::string::npos);
   const std::string readme = text("README.md");
@@ -120,11 +121,13 @@ TEST_F(RuleEmit, TheProjectTellsOfItsRounds) {
 
 TEST_F(RuleEmit, RefusesAHostsLink) {
   const Case c = case_of("one", hot(kOneRound), {}, 1);
-  for (const auto& [board, said] : {std::pair{BoardChoice{.name = "ulx3s"}, "--board ulx3s: "},
-                                    std::pair{BoardChoice{.name = "", .bus = "wishbone"}, "--bus wishbone: "}})
-    EXPECT_TRUE(refused_with<InputError>([&] {
-                  with_places(c.scene, {}, [&] { check_emission(c.setup.plan, {.board = board}); });
-                }).starts_with(std::string("rule.toml:10:1: ") + said + "a host's link serves the pair law alone"))
+  for (const auto& [board, said] :
+       {std::pair{BoardChoice{.name = "ulx3s"}, "--board ulx3s: "},
+        std::pair{BoardChoice{.name = "", .bus = "wishbone"}, "--bus wishbone: "}})
+    EXPECT_TRUE(
+        refused_with<InputError>([&] {
+          with_places(c.scene, {}, [&] { check_emission(c.setup.plan, {.board = board}); });
+        }).starts_with(std::string("rule.toml:10:1: ") + said + "a host's link serves the pair law alone"))
         << said;
 }
 
