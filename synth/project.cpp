@@ -56,6 +56,11 @@ Project read_project(const std::string& directory) {
   Project project;
   project.directory = directory;
   project.plan = entry<std::string>(json, file, "plan");
+  if (json.contains("/rule/rounds"_json_pointer))
+    throw InputError(
+        fmt::format("{}: is of the rule '{}', and synthesis knows the blocks of the pair law alone", file,
+                    entry<std::string>(json, file, "rule/name")),
+        "the project's 'make -C bench yosys' reads it with yosys");
   project.nodes = entry<uint64_t>(json, file, "nodes");
   project.particles = entry<uint64_t>(json, file, "particles");
   project.capacity = entry<int>(json, file, "arch/capacity");

@@ -423,9 +423,10 @@ std::string Datapath::input(const Node& node, int round, bool pair, int bits, st
     case Source::apart: {
       const Slice mine = own(word, FieldKind::position, axis);
       const Slice theirs{"candidate_q", axis * (P + 2), P + 2, true};
-      text += fmt::format("    logic {}{};\n    assign {} = {} - {};\n", range_text(P + 3), name, name,
-                          theirs.fit(P + 3), mine.fit(P + 3));
-      return Slice{name, 0, P + 3, true}.fit(bits);
+      const int width = std::min(P + 3, bits);  // the input holds every difference: its low bits are enough
+      text += fmt::format("    logic {}{};\n    assign {} = {} - {};\n", range_text(width), name, name,
+                          theirs.fit(width), mine.fit(width));
+      return Slice{name, 0, width, true}.fit(bits);
     }
     case Source::own_x: {
       text += fmt::format("    logic {}{};\n    assign {} = {{{}, {}}};\n", range_text(P + G), name, name,
@@ -562,13 +563,16 @@ std::string Datapath::pair_of(int k) {
       const Form form = form_of_output(schedule, round.place(s) + c);
       terms.push_back(Slice{fmt::format("sum_{}_{}", s, c), 0, form.bits, form.is_signed}.fit(kick));
     }
+    // A word of its own: yosys takes no signed signal for an unsigned port.
+    text += fmt::format("    logic {}push_{};\n    assign push_{} = {{{}}};\n", range_text(components * kick), s, s,
+                        fmt::join(terms, ", "));
     text += fmt::format(
         "    cuboct_sums #(\n      .Axes({0}), .KickBits({1}), .SumBits({2}), .Capacity({3}), .Spaced(0), "
         ".Adds(1),\n"
         "      .SlotBits(SlotBits)\n    ) u_sums_{4} (\n      .clk_i, .rst_ni, .kick_valid_i(made && when),\n"
-        "      .push_i({{{5}}}),\n      .next_slot_i(busy_{6}[f] ? next_slot : look_slot_i),\n"
-        "      .take_i(take_i && round_i[{7}]), .sum_o(sums_{6}_{4}[f*{8} +: {8}])\n    );\n",
-        components, kick, sum, plan_.arch.capacity, s, fmt::join(terms, ", "), k + 1, k, components * sum);
+        "      .push_i(push_{4}),\n      .next_slot_i(busy_{5}[f] ? next_slot : look_slot_i),\n"
+        "      .take_i(take_i && round_i[{6}]), .sum_o(sums_{5}_{4}[f*{7} +: {7}])\n    );\n",
+        components, kick, sum, plan_.arch.capacity, s, k + 1, k, components * sum);
   }
   if (schedule.steps.fault >= 0) {
     const Form code = form_of_step(schedule, schedule.steps.fault_code),
@@ -718,7 +722,9 @@ std::string Datapath::finish_of(int k) {
         "= '0;\n",
         k + 1);
   }
-  return text + "    logic unused_waited;\n    assign unused_waited = ^{waited, slot_q};\n  end\n";
+  std::string totals;
+  for (size_t s = 0; s < round.sums.size(); ++s) totals += fmt::format(", total_{}", s);
+  return text + fmt::format("    logic unused_waited;\n    assign unused_waited = ^{{waited, slot_q{}}};\n  end\n", totals);
 }
 
 std::string Datapath::text() {

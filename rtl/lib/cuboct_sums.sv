@@ -33,9 +33,11 @@ module cuboct_sums #(
   end
   assign old = counts_q ? word : '0;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis
-    logic signed [SumBits-1:0] push;
+    logic signed [KickBits-1:0] term;
+    logic signed [SumBits-1:0]  push;
+    assign term = push_i[a*KickBits +: KickBits];
     cuboct_resize #(.InBits(KickBits), .OutBits(SumBits)) u_push (
-      .a_i($signed(push_i[a*KickBits +: KickBits])), .y_o(push)
+      .a_i(term), .y_o(push)
     );
     if (Adds != 0) begin : gen_add
       assign added[a*SumBits +: SumBits] = old[a*SumBits +: SumBits] + push;

@@ -361,9 +361,10 @@ module cuboct_rule_core #(
   for (genvar u = 0; u < Rounds; u++) begin : gen_tick
     localparam int Cycles   = {16'd0, FinishCycles[u*16 +: 16]};
     localparam int TickBits = $clog2(Capacity + Cycles + 1);
+    localparam int First    = (u == 0) ? 1 : 0;  // the first one dumps
     logic [TickBits-1:0] tick, next;
     cuboct_tick #(.Tail(Cycles - 2), .Registered(0), .CountBits(CountBits), .TickBits(TickBits)) u_tick (
-      .clk_i, .rst_ni, .update_i(in_update && round[u]), .dump_i(in_dump && u == 0), .step_i(1'b1),
+      .clk_i, .rst_ni, .update_i(in_update && round[u]), .dump_i(in_dump && First != 0), .step_i(1'b1),
       .count_i(own_count_q), .tick_o(tick), .next_o(next), .more_o(more[u]), .update_done_o(updated[u]),
       .dump_done_o(dumped[u])
     );
@@ -435,5 +436,5 @@ module cuboct_rule_core #(
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
   logic unused_fields;
-  assign unused_fields = ^{stream_data, fault_particle, migrate_pop, next_load, goes_on, first_own};
+  assign unused_fields = ^{stream_data, relay_own, relay_halos, fault_particle, migrate_pop, next_load, goes_on, first_own};
 endmodule

@@ -59,6 +59,22 @@ sum.force = "1 kN/m * (r - pitch) * d / r"
 finish.T = "T + heat / 30"
 )toml";
 
+inline const std::string kTwoRounds = R"toml(reach = "1.3 * pitch"
+[rule.particle.crowd]
+range = [-40, 40]
+[rule.particle.T]
+unit = "K"
+range = "[0, 2000] K"
+start = "300 K + 100 K * x.x / pitch"
+[[rule.round]]
+sum.n = "1 - r / (1.3 * pitch)"
+finish.crowd = "max(min(n, 30), -30)"
+[[rule.round]]
+sum.heat = "T_j - T_i"
+sum.force = "(1 kN/m + 0.1 kN/m * (crowd_i + crowd_j)) * (r - pitch) * d / r"
+finish.T = "T + heat / 30"
+)toml";
+
 inline Case case_of(const std::string& name, const std::string& text, const Arch& arch, uint64_t steps) {
   Case c;
   c.name = name, c.steps = steps;

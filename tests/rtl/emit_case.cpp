@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed>,
-// random_flat_<seed> and random_brick_<seed> are random ones, `example` the committed one). Behind a name
+// random_flat_<seed> and random_brick_<seed> are random ones, `example` the committed one, `rule` a rule of
+// text). Behind a name
 // ".narrow": with narrow memories;
 // ".arrival": with halos on arrival. emit_case --kinds prints names that between them have every kind of
 // node.
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "hw/rtl/rtl_emit.h"
+#include "tests/backend/rule_cases.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
 
@@ -25,6 +27,18 @@ cuboct::test::Case example() {
   return {"example", make_setup(scene, arch), 2};
 }
 
+// Two rounds, the second of which reads what the first wrote of the other particle.
+cuboct::test::Case rule() {
+  return cuboct::test::case_of(
+      "rule",
+      "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nreach = { margin = \"0 mm\" }\n"
+      "geometry = { shape = \"box\", min = \"[0, 0, 0] mm\", max = \"[2, 1, 1] mm\" }\n"
+      "run = { dt = \"0.2 us\", steps = 9 }\n"
+      "velocity = [ { thermal_speed = \"30 m/s\", seed = 3 } ]\n[rule]\n" +
+          cuboct::test::kTwoRounds,
+      {}, 3);
+}
+
 bool take_end(std::string& name, const std::string& end) {
   if (!name.ends_with(end)) return false;
   name.erase(name.size() - end.size());
@@ -36,6 +50,7 @@ cuboct::test::Case case_of(std::string name) {
   if (take_end(name, ".narrow")) return with_narrow_memories(case_of(name));
   if (take_end(name, ".arrival")) return with_halos_on_arrival(case_of(name));
   if (name == "example") return example();
+  if (name == "rule") return rule();
   const auto seeded = [&](const std::string& start) { return std::stoull(name.substr(start.size())); };
   if (name.starts_with("random_flat_")) return random_flat_case(seeded("random_flat_"));
   if (name.starts_with("random_brick_")) return random_brick_case(seeded("random_brick_"));

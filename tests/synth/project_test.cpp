@@ -130,6 +130,10 @@ TEST_F(Refuse, WhatIsNoProject) {
             "files": ["rtl/a.sv"]})");
   EXPECT_EQ(refusal(request()),
             "DIR/project.json: names rtl/a.sv, which is not there\n  hint: emit the project again");
+  write("project.json", R"({"plan": "x", "rule": {"name": "heat", "rounds": 1}})");
+  EXPECT_EQ(refusal(request()),
+            "DIR/project.json: is of the rule 'heat', and synthesis knows the blocks of the pair law alone\n"
+            "  hint: the project's 'make -C bench yosys' reads it with yosys");
 }
 
 TEST_F(Refuse, UnknownTargets) {
