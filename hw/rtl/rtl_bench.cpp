@@ -340,23 +340,36 @@ const char* law_rows(const RtlDesign& design) {
                      : "| `rtl/cuboct_*_rom.sv` | its tables |\n";
 }
 
-// A state as the bench holds it: golden's particles by cell, and of a rule the numbers of its fields by id.
+// A state as the bench holds it: golden's particles by cell, and of a rule the numbers of its fields by id and of its
+// bonds.
 class Shown {
  public:
   Shown(const Plan& plan, const Golden& golden) : golden_(golden) {
     if (plan.program == nullptr) return;
     numbers_ = static_cast<size_t>(plan.program->program.numbers());
-    fields_ = golden.state().fields;
+    bond_numbers_ = static_cast<size_t>(plan.program->program.bond_numbers());
+    rows_ = plan.program->rows.get();
+    State state = golden.state();
+    fields_ = std::move(state.fields), bonds_ = std::move(state.bonds);
   }
   const std::vector<Particle>& of(uint32_t cell) const { return golden_.cells()[cell]; }
   int64_t field(uint32_t id, int number) const {
     return fields_[id * numbers_ + static_cast<size_t>(number)];
   }
+  // Of a place in the particle's row; one without bond has its own id.
+  int64_t bond(uint32_t id, const WordField& f) const {
+    const uint64_t b = rows_->first[id] + static_cast<uint64_t>(f.place);
+    const bool there = b < rows_->first[id + 1];
+    if (f.kind == FieldKind::bond_other) return there ? rows_->other[b] : id;
+    if (f.kind == FieldKind::bond_kind) return there ? rows_->kind[b] : 0;
+    return there ? bonds_[b * bond_numbers_ + static_cast<size_t>(f.number)] : 0;
+  }
 
  private:
   const Golden& golden_;
-  size_t numbers_ = 0;
-  std::vector<int64_t> fields_;
+  size_t numbers_ = 0, bond_numbers_ = 0;
+  const graph::BondRows* rows_ = nullptr;
+  std::vector<int64_t> fields_, bonds_;
 };
 
 // {above, particle}; above are 32-bit words, least significant first.
@@ -380,10 +393,11 @@ std::string particle_hex(const Plan& plan, const Shown& state, const Particle& p
           return particle.u[f.axis];
         case FieldKind::field:
           return state.field(particle.id, f.number);
-        case FieldKind::away:
         case FieldKind::bond_other:
         case FieldKind::bond_kind:
         case FieldKind::bond_field:
+          return state.bond(particle.id, f);
+        case FieldKind::away:
         case FieldKind::cell:
           break;
       }

@@ -436,5 +436,6 @@ module cuboct_rule_core #(
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
   logic unused_fields;
-  assign unused_fields = ^{stream_data, relay_own, relay_halos, fault_particle, migrate_pop, next_load, goes_on, first_own};
+  assign unused_fields = ^{stream_data, relay_own, relay_halos, fault_particle, migrate_pop, next_load, goes_on,
+                           first_own};
 endmodule
