@@ -340,8 +340,8 @@ const char* law_rows(const RtlDesign& design) {
                      : "| `rtl/cuboct_*_rom.sv` | its tables |\n";
 }
 
-// A state as the bench holds it: golden's particles by cell, and of a rule the numbers of its fields by id and of its
-// bonds.
+// A state as the bench holds it: golden's particles by cell, and of a rule the numbers of its fields by id
+// and of its bonds.
 class Shown {
  public:
   Shown(const Plan& plan, const Golden& golden) : golden_(golden) {

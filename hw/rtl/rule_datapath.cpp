@@ -564,8 +564,8 @@ std::string Datapath::pair_of(int k) {
       terms.push_back(Slice{fmt::format("sum_{}_{}", s, c), 0, form.bits, form.is_signed}.fit(kick));
     }
     // A word of its own: yosys takes no signed signal for an unsigned port.
-    text += fmt::format("    logic {}push_{};\n    assign push_{} = {{{}}};\n", range_text(components * kick), s, s,
-                        fmt::join(terms, ", "));
+    text += fmt::format("    logic {}push_{};\n    assign push_{} = {{{}}};\n", range_text(components * kick),
+                        s, s, fmt::join(terms, ", "));
     text += fmt::format(
         "    cuboct_sums #(\n      .Axes({0}), .KickBits({1}), .SumBits({2}), .Capacity({3}), .Spaced(0), "
         ".Adds(1),\n"
@@ -724,7 +724,9 @@ std::string Datapath::finish_of(int k) {
   }
   std::string totals;
   for (size_t s = 0; s < round.sums.size(); ++s) totals += fmt::format(", total_{}", s);
-  return text + fmt::format("    logic unused_waited;\n    assign unused_waited = ^{{waited, slot_q{}}};\n  end\n", totals);
+  return text +
+         fmt::format("    logic unused_waited;\n    assign unused_waited = ^{{waited, slot_q{}}};\n  end\n",
+                     totals);
 }
 
 std::string Datapath::text() {

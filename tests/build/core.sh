@@ -5,7 +5,7 @@
 set -euo pipefail
 build=$1 ninja=$2
 libraries='lib(c|fmt|gcc_s|hdf5(_serial)?|hwy|m|stdc\+\+|sz|tomlplusplus|z)|ld-linux-[a-z0-9-]+'
-parts='cuboct_cli|cuboct_hw_core|cuboct_lattice|cuboct_lattice_run|cuboct_model_core|cuboct_model_files|cuboct_program|cuboct_timing'
+parts='cuboct_cli|cuboct_hw_core|cuboct_hw_pipeline|cuboct_lattice|cuboct_lattice_run|cuboct_model_core|cuboct_model_files|cuboct_program|cuboct_timing'
 own='cuboct|cuboct-read-trace|library_headers'
 
 loads() { readelf -d "$build/$1" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p'; }
