@@ -39,12 +39,6 @@ constexpr const char* kMarker = ".cuboct-emit";
 RtlDesign design_of(const Plan& plan) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("RTL: " + why).about({"rule.file", "rule", "box"});
-  if (plan.program && plan.program->rows)
-    throw InputError(
-        fmt::format("RTL: the rule '{}' has bonds that last, and no node in SystemVerilog holds their rows",
-                    plan.program->program.name),
-        "engines golden, lattice and systemc run it")
-        .about({"rule.file", "rule"});
   RtlDesign design = decide(plan);
   if (plan.program) design.rule = rule_parameters(plan);
   return design;
