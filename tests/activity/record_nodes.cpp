@@ -96,7 +96,8 @@ std::set<uint32_t> busiest_median_idlest(const std::vector<MachineEvents>& nodes
 // A line of hexadecimal digits, the last field first.
 class Digits {
  public:
-  Digits& put(const emu::Bits& bits, int width) {
+  template <int kWords>
+  Digits& put(const emu::BitsOf<kWords>& bits, int width) {
     std::string field;
     for (int lsb = (width + 3) / 4 * 4 - 4; lsb >= 0; lsb -= 4)
       field += "0123456789abcdef"[bits.get(lsb, std::min(4, width - lsb))];
@@ -129,7 +130,7 @@ class Recorder final : public emu::NodeModel {
     for (int f = 0; f < faces_; ++f) inputs.put(came_[at(f)].payload, plan_.words.link_bits);
     node_.clock(in, out);
     outputs.put(out.phase_start, 8).put(out.phase_end, 8).put(out.idle, 1).put(out.fault, 1);
-    outputs.put(out.observe, 1).put(out.observe ? out.observe_data : emu::Bits{}, plan_.words.particle_bits);
+    outputs.put(out.observe, 1).put(out.observe ? out.observe_data : emu::Word{}, plan_.words.particle_bits);
     outputs.put(ready_, faces_).put(valid_, faces_);
     uint64_t ended = 0;
     for (int f = 0; f < faces_; ++f) ended |= uint64_t{sent_[at(f)].end} << f;

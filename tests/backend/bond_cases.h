@@ -2,6 +2,8 @@
 // Small bodies whose bonds break, yield, are lost, and migrate with their particles.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <random>
 #include <string>
 
@@ -72,6 +74,11 @@ struct Body {
         program_beginning(c.scene, {*plan.program, plan.rule, plan.lattice, plan.origin, plan.arch.capacity});
   }
 };
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  EXPECT_NE(text.find(from), std::string::npos) << from;
+  return text.replace(text.find(from), from.size(), to);
+}
 
 // Four particles, at the corners of a tetrahedron, with a bond between each two.
 inline std::string of_four(const std::string& text) {

@@ -116,10 +116,6 @@ TEST(BondNodes, OfASolidThatYieldsHaveGoldensBitsAndTheModelsCycles) {
   EXPECT_GT(seen.spans, 50000u);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  EXPECT_NE(text.find(from), std::string::npos) << from;
-  return text.replace(text.find(from), from.size(), to);
-}
 const std::string kSize = "[geometry]\nshape = \"box\"\nmin = \"[0, 0, 0] mm\"\nmax = \"[3.5, 3, 2] mm\"\n";
 
 // Bonds across the seams of a ring of three cells, and of a layer without a third axis.

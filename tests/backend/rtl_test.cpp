@@ -250,10 +250,9 @@ emu::RunResult run_lattice(const Case& c) {
   host.reset_n = 1;
   host.load_valid = 1;
   for (uint32_t n = 0; n < nodes; ++n)
-    for (const Particle& p : particles[n]) {
-      const emu::Bits word = emu::load_word(plan, p);
-      host.load_data = word.word.data();
-      host.load_cell = plan.local_of(p.cell);
+    for (const emu::Loaded& loaded : particles[n]) {
+      host.load_data = loaded.word.word.data();
+      host.load_cell = loaded.cell;
       clock(n);
     }
   host.load_valid = 0;
