@@ -14,7 +14,8 @@ using emu::NodeInputs;
 using emu::NodeModel;
 using emu::NodeOutputs;
 
-void add(Hash& hash, const emu::Bits& bits) {
+template <int kWords>
+void add(Hash& hash, const emu::BitsOf<kWords>& bits) {
   for (const uint64_t word : bits.word) hash.add(word);
 }
 
