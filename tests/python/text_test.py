@@ -257,15 +257,15 @@ class Programs(unittest.TestCase):
 
 
 class Refusals(unittest.TestCase):
-    def test_what_runs_no_text(self):
-        for call in (
-            lambda: cuboct.Simulation(text("heat", steps=10), "systemc"),
-            lambda: cuboct.run(text("heat", steps=10), "rtl"),
-        ):
-            with self.assertRaises(cuboct.InputError) as caught:
-                call()
-            self.assertEqual(caught.exception.key, "rule.file")
-            self.assertIn("reference, golden, lattice and gpu", caught.exception.hint)
+    def test_machines_run_it(self):
+        scene = text("heat", steps=4)
+        run = cuboct.run(scene, "systemc")
+        self.assertEqual(run.hashes.tolist(), cuboct.run(scene, "golden").hashes.tolist())
+        self.assertEqual(run.cycles.shape[0], 4)
+        stepped, golden = cuboct.Simulation(scene, "systemc"), cuboct.Simulation(scene, "golden")
+        stepped.step(2), stepped.step(2), golden.step(4)
+        self.assertEqual(stepped.hash, golden.hash)
+        self.assertTrue(cuboct.crosscheck(scene, ["golden", "lattice", "systemc"], steps=2))
 
     def test_how_its_code_runs(self):
         for call, message in (
