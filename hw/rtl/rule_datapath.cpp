@@ -365,8 +365,8 @@ std::string Datapath::lost_of(int k) {
       "    always_ff @(posedge clk_i) begin\n      if (take_i) met_q <= taken_met;\n    end\n"
       "    logic [{1}:0] late_slot;\n"
       "    for (genvar p = 0; p < {2}; p++) begin : gen_place\n"
-      "      logic still;  // the bond counts\n"
-      "      assign missed[p] = taken_q && !met_q[p] && (slot_q[{3}+p*{4} +: {5}] != {6});\n",
+      "      logic still;  // of a taken particle: the bond counts\n"
+      "      assign missed[p] = !met_q[p] && (slot_q[{3}+p*{4} +: {5}] != {6});\n",
       B - 1, plan_.words.particle_bits + 1, B, bond_lsb_, place_bits_, id,
       own("slot_q", FieldKind::id).text());
   if (program_.broken_at >= 0) {
@@ -385,13 +385,12 @@ std::string Datapath::lost_of(int k) {
     text +=
         before + fmt::format(
                      "      logic broken, made_broken;\n"
-                     "      cuboct_broken u_broken (.clk_i, .rst_ni, .valid_i(1'b1){}, .broken_o(broken), "
+                     "      cuboct_broken u_broken (.clk_i, .rst_ni, .valid_i(taken_q){}, .broken_o(broken), "
                      ".valid_o(made_broken));\n"
-                     "      assign still = !broken;\n"
-                     "      logic unused_made;\n      assign unused_made = made_broken;\n",
+                     "      assign still = made_broken && !broken;\n",
                      connections);
   } else {
-    text += "      assign still = 1'b1;\n";
+    text += "      assign still = taken_q;\n";
   }
   text += fmt::format(
       "      logic missed_late;\n"

@@ -46,6 +46,41 @@ dt = "0.2 us"
 steps = 1
 )toml";
 
+// Of three rounds, of little arithmetic: springs that break, the weaker the more of their neighbours' bonds
+// have broken.
+inline constexpr const char* kSprings = R"toml(density = "1.41 g/cm^3"
+[rule]
+bonds = "reference"
+reach = "1.2 * pitch"
+stiffness = "8 kN/m"
+broken = "not whole"
+[rule.bond.whole]
+kind = "truth"
+start = "true"
+[rule.particle.left]
+range = [-1, 30]
+[rule.particle.near]
+range = [-1, 400]
+[[rule.round]]
+bond.whole = "whole and dot(d, d) < 1.1 * pitch^2"
+sum.n = { is = "1", when = "whole" }
+finish.left = "n"
+[[rule.round]]
+sum.all = { is = "left_j", when = "whole" }
+finish.near = "min(all, 144)"
+[[rule.round]]
+sum.force = { is = "(0.5 kN/m + 0.001 kN/m * (near_i + near_j)) * d * (1 - pitch^2 / dot(d, d))", when = "whole" }
+[packing]
+pitch = "1 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[3.5, 3, 2] mm"
+[run]
+dt = "0.2 us"
+steps = 1
+)toml";
+
 struct Motion {
   Vec3 together = Vec3::Zero();  // m/s
   double random = 0;             // m/s, at most, along each axis
