@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,13 @@ namespace cuboct::synth {
 
 // Cycles per step.
 struct ProjectCycles {
-  uint64_t expected = 0;  // of the busiest node at the scene's start (hw/cost/cycles.h)
+  // Of the busiest node at the scene's start (hw/cost/cycles.h), of a pair law.
+  std::optional<uint64_t> expected;
   // Exact, over the first `steps` steps; steps = 0: nobody counted.
   double mean = 0;
   uint64_t most = 0, steps = 0;
 
-  double best() const { return steps > 0 ? mean : static_cast<double>(expected); }
+  std::optional<double> best() const { return steps > 0 ? mean : std::optional<double>(expected); }
 };
 
 struct Project {

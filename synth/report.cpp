@@ -69,22 +69,28 @@ Block block_of(const nlohmann::json& json) {
 // Whether a unit's clock is that of a machine; a block alone takes no steps.
 bool whole(const std::string& unit) { return unit == "node" || unit == "lattice" || unit == "board"; }
 
-double steps_per_second(const Report& report, double mhz) { return mhz * 1e6 / report.cycles.best(); }
+std::optional<double> steps_per_second(const Report& report, double mhz) {
+  const std::optional<double> cycles = report.cycles.best();
+  if (!whole(report.unit) || !cycles) return {};
+  return mhz * 1e6 / *cycles;
+}
 
 std::string cycles_text(const ProjectCycles& c) {
-  if (c.steps == 0) return fmt::format("{}, expected of the busiest node: no run counted them", c.expected);
+  if (!c.best()) return "not known: no run counted them";
+  if (c.steps == 0) return fmt::format("{}, expected of the busiest node: no run counted them", *c.expected);
   return fmt::format("{:.1f}, the mean of the first {} steps, counted; the most {}", c.mean, c.steps, c.most);
 }
 
 Ordered to_json(const ProjectCycles& c) {
-  Ordered json = {{"expected", c.expected}};
+  Ordered json = Ordered::object();
+  if (c.expected) json["expected"] = *c.expected;
   if (c.steps > 0) json["counted"] = {{"mean", c.mean}, {"most", c.most}, {"steps", c.steps}};
   return json;
 }
 
 ProjectCycles cycles_of(const nlohmann::json& json) {
   ProjectCycles c;
-  c.expected = json.at("expected");
+  if (json.contains("expected")) c.expected = json.at("expected").get<uint64_t>();
   if (json.contains("counted")) {
     const auto& counted = json.at("counted");
     c.mean = counted.at("mean");
@@ -184,8 +190,8 @@ std::string print_table(const Report& report) {
   if (report.fmax) {
     line("Fmax", fmt::format("{:.2f} MHz ({})", *report.fmax, report.fmax_from));
     if (report.icetime) line("Fmax by icetime", fmt::format("{:.2f} MHz", *report.icetime));
-    if (whole(report.unit))
-      line("steps per second", fmt::format("{:.4g} at Fmax", steps_per_second(report, *report.fmax)));
+    if (const auto steps = steps_per_second(report, *report.fmax))
+      line("steps per second", fmt::format("{:.4g} at Fmax", *steps));
   } else if (!report.silicon) {
     line("Fmax", "not known: not placed");
   }
@@ -224,7 +230,7 @@ nlohmann::ordered_json to_json(const Report& report) {
   if (report.fmax) {
     json["fmax_mhz"] = *report.fmax;
     json["fmax_from"] = report.fmax_from;
-    if (whole(report.unit)) json["steps_per_second"] = steps_per_second(report, *report.fmax);
+    if (const auto steps = steps_per_second(report, *report.fmax)) json["steps_per_second"] = *steps;
     json["critical_path"] = report.critical;
   }
   if (report.icetime) json["icetime_mhz"] = *report.icetime;

@@ -243,6 +243,15 @@ std::string describe(const Dimension& dimension) {
         quantity::pressure, quantity::energy, quantity::damping, quantity::angle, quantity::angular_velocity,
         quantity::temperature})
     if (known.dimension == dimension) return known.name;
+  return si_unit(dimension);
+}
+
+std::string si_unit(const Dimension& dimension) {
+  for (const auto& [known, unit] : {std::pair{quantity::force, "N"},
+                                    {quantity::pressure, "Pa"},
+                                    {quantity::energy, "J"},
+                                    {quantity::stiffness, "N/m"}})
+    if (known.dimension == dimension) return unit;
   const char* base[] = {"kg", "m", "s", "rad", "K"};
   std::string above, below;
   for (size_t i = 0; i < std::size(base); ++i) {

@@ -49,6 +49,9 @@ inline constexpr Quantity temperature{{{0, 0, 0, 0, 1}}, "a temperature", "300 K
 // "a length" for the known ones, else base units: "kg*m^2/s^3".
 std::string describe(const Dimension& dimension);
 
+// The unit whose factor is 1: "J", "Pa", else of base units, "kg/s".
+std::string si_unit(const Dimension& dimension);
+
 // What a text says, in SI units. A decimal prefix moves the decimal exponent before the digits are read, so
 // that "1.41 g/cm^3" is exactly the double nearest to 1410.
 struct ParsedQuantity {

@@ -28,7 +28,7 @@ struct RuleText {
     std::string name;
     Value::Kind kind = Value::Kind::number;
     Dimension dimension;
-    std::string unit;  // as it was written; empty: a plain number
+    std::string unit;  // of its SI values; empty: a plain number
     std::string what;
     bool shown = true;                               // of particles: in frames
     std::optional<std::pair<double, double>> range;  // SI, least and greatest, which integers need

@@ -98,8 +98,9 @@ RuleText::Field field_of(const ConfigTable& table) {
   if (const auto unit = table.find("unit")) {
     if (field.kind == Value::Kind::truth) unit->fail("a truth has no unit");
     if (unit->reduced()) unit->fail("units = \"reduced\": there are none");
-    field.unit = unit->string();
-    field.dimension = quantity_of(*unit, "1 " + field.unit).dimension;
+    const ParsedQuantity one = quantity_of(*unit, "1 " + unit->string());
+    field.dimension = one.dimension;
+    field.unit = one.values[0] == 1 ? unit->string() : si_unit(one.dimension);
   }
   if (const auto range = table.find("range")) {
     const std::vector<double> ends = range->numbers({field.dimension, "two values", "[0, 1]"});

@@ -172,6 +172,24 @@ TEST(Program, FramesAndProbesHaveTheDamage) {
   EXPECT_LT(*std::ranges::min_element(damage), 0.2);
 }
 
+// Values are SI, so what is told beside them is too, whatever unit the text's author likes.
+TEST(Program, FieldsAreToldInSi) {
+  const auto unit_of = [](const std::string& unit) {
+    return scene_of_text(
+               struck_block("probe = [ { name = \"near\", kind = \"field\", field = \"a\", region = "
+                            "{ shape = \"sphere\", radius = \"1 m\" } } ]\n"
+                            "[rule]\nreach = \"1.2 * pitch\"\n[rule.particle.a]\n" +
+                            unit + "[[rule.round]]\nsum.force = \"0 N * d / r\"\n"))
+        .probes.at(0)
+        .unit;
+  };
+  EXPECT_EQ(unit_of("unit = \"eV\"\n"), "J");
+  EXPECT_EQ(unit_of("unit = \"ug\"\n"), "kg");
+  EXPECT_EQ(unit_of("unit = \"kJ/s\"\n"), "kg*m^2/s^3");
+  EXPECT_EQ(unit_of("unit = \"N*s/m\"\n"), "N*s/m");
+  EXPECT_EQ(unit_of(""), "1");
+}
+
 // One bond of two particles, pulled and pushed: its force is that of a spring in series with a slider.
 TEST(Program, ASpringThatYieldsRemembers) {
   const Scene scene = scene_of_text(

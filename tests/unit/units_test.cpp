@@ -86,6 +86,16 @@ TEST(Units, AreNamedInMessages) {
   EXPECT_EQ(describe(Dimension{{1, 2, -2, 0, -1}}), "kg*m^2/s^2/K");
 }
 
+TEST(Units, OfSiHaveTheFactorOne) {
+  for (const Quantity& q : {quantity::force, quantity::pressure, quantity::energy, quantity::stiffness,
+                            quantity::velocity, quantity::temperature, quantity::angular_velocity})
+    EXPECT_EQ(parse_quantity("2 " + si_unit(q.dimension)), (ParsedQuantity{{2}, false, q.dimension}))
+        << q.name;
+  EXPECT_EQ(si_unit(quantity::energy.dimension), "J");
+  EXPECT_EQ(si_unit(quantity::damping.dimension), "kg/s");
+  EXPECT_EQ(si_unit(Dimension{}), "1");
+}
+
 TEST(Spelling, FindsTheNearest) {
   EXPECT_EQ(nearest_spelling("capcity", {"filter_lanes", "capacity"}), "capacity");
   EXPECT_EQ(nearest_spelling("vleocity", {"velocity"}), "velocity");  // two neighbours swapped: one edit
