@@ -33,7 +33,7 @@ std::vector<std::vector<uint32_t>> order_of(const Golden& golden) {
 }
 
 // Runs the nodes and golden for `steps`, and compares hashes, states, orders and the fault that ends the run.
-void compare(const Body& body, uint64_t steps, double stalls, Counts& counts) {
+void compare(const BondedCase& body, uint64_t steps, double stalls, Counts& counts) {
   const Plan& plan = body.c.setup.plan;
   const State& initial = body.c.setup.initial;
   ASSERT_EQ(machine_refusal(plan), "");
@@ -88,7 +88,7 @@ TEST(BondNodes, OfGlassThatBreaksHaveGoldensBitsAndTheModelsCycles) {
   Counts counts;
   Seen seen;
   for (const Arch& arch : machines()) {
-    const Body body(kGlass, {kDrift, 8}, arch);
+    const BondedCase body(kGlass, {kDrift, 8}, arch);
     compare(body, body.c.steps, 0, counts);
     if (HasFatalFailure()) return;
     EXPECT_EQ(difference(body.c, seen), "");
@@ -106,7 +106,7 @@ TEST(BondNodes, OfASolidThatYieldsHaveGoldensBitsAndTheModelsCycles) {
   Counts counts;
   Seen seen;
   for (const Arch& arch : machines()) {
-    const Body body(kPlastic, {kDrift / 5, 20}, arch);
+    const BondedCase body(kPlastic, {kDrift / 5, 20}, arch);
     compare(body, body.c.steps, 0, counts);
     if (HasFatalFailure()) return;
     EXPECT_EQ(difference(body.c, seen), "");
@@ -123,13 +123,14 @@ TEST(BondNodes, OfBoxesAndOfLayersHaveGoldensBitsAndTheModelsCycles) {
   Counts ring, layer;
   Seen seen;
   for (const Arch& arch : machines()) {
-    const Body box(replaced(kPlastic, kSize, "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n"),
-                   {kDrift / 5, 20}, arch, 4);
-    const Body sheet(replaced(replaced(kGlass, kSize,
-                                       "[geometry]\nshape = \"box\"\nmin = \"[0, 0, -0.5] mm\"\n"
-                                       "max = \"[5, 4, 0.5] mm\"\n"),
-                              "pitch = \"1 mm\"\n", "pitch = \"1 mm\"\naxes = [[1, -1, 0], [1, 1, -2]]\n"),
-                     {kDrift, 20, 0, true}, arch);
+    const BondedCase box(replaced(kPlastic, kSize, "[box]\nperiodic = \"xyz\"\ncells = [4, 3, 3]\n"),
+                         {kDrift / 5, 20}, arch, 4);
+    const BondedCase sheet(
+        replaced(replaced(kGlass, kSize,
+                          "[geometry]\nshape = \"box\"\nmin = \"[0, 0, -0.5] mm\"\n"
+                          "max = \"[5, 4, 0.5] mm\"\n"),
+                 "pitch = \"1 mm\"\n", "pitch = \"1 mm\"\naxes = [[1, -1, 0], [1, 1, -2]]\n"),
+        {kDrift, 20, 0, true}, arch);
     ASSERT_EQ(box.c.setup.plan.lattice.period(), (Cell{4, 3, 3}));
     ASSERT_EQ(sheet.c.setup.plan.rule.axes, 2);
     compare(box, box.c.steps, 0, ring);
@@ -146,7 +147,7 @@ TEST(BondNodes, OfBoxesAndOfLayersHaveGoldensBitsAndTheModelsCycles) {
 TEST(BondNodes, HaveGoldensBitsWhereLinksStall) {
   Counts counts;
   for (const Arch& arch : machines()) {
-    compare(Body(kGlass, {kDrift, 8}, arch), 6, 0.3, counts);
+    compare(BondedCase(kGlass, {kDrift, 8}, arch), 6, 0.3, counts);
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(counts.moved, 50u);
@@ -156,7 +157,7 @@ TEST(BondNodes, HaveGoldensBitsWhereLinksStall) {
 // Who is where decides who is met, and not how far: while nobody migrates the filter need not look again.
 TEST(BondNodes, AreNotFilteredAgainWhileNobodyMigrates) {
   Seen seen;
-  EXPECT_EQ(difference(Body(kGlass, {Vec3::Zero(), 2}, Arch(), 10).c, seen), "");
+  EXPECT_EQ(difference(BondedCase(kGlass, {Vec3::Zero(), 2}, Arch(), 10).c, seen), "");
   EXPECT_EQ(seen.leave, 0u);
   EXPECT_GT(seen.busy, 0u);
   EXPECT_EQ(seen.filtered * 10, seen.busy * 2);  // once by each of two models
@@ -167,7 +168,7 @@ TEST(BondNodes, ThatAreLostAreTheFaultOfGolden) {
   Counts counts;
   for (const Arch& arch : machines())
     for (const double stalls : {0.0, 0.2}) {
-      compare(Body(kGlass, {Vec3::Zero(), 10, 0.9}, arch), 4, stalls, counts);
+      compare(BondedCase(kGlass, {Vec3::Zero(), 10, 0.9}, arch), 4, stalls, counts);
       if (HasFatalFailure()) return;
     }
   EXPECT_EQ(counts.faults, std::vector<Fault>(2 * machines().size(), Fault::bond_lost));
@@ -176,7 +177,7 @@ TEST(BondNodes, ThatAreLostAreTheFaultOfGolden) {
 TEST(BondNodes, ThatAreBrokenMayBeAnywhereAndOthersMayNot) {
   Counts counts;
   for (const Arch& arch : machines()) {
-    const Body glass(of_four(kGlass), {Vec3::Zero(), 0, 0.3}, arch),
+    const BondedCase glass(of_four(kGlass), {Vec3::Zero(), 0, 0.3}, arch),
         plastic(of_four(kPlastic), {Vec3::Zero(), 0, 3.6}, arch);
     ASSERT_EQ(glass.c.setup.initial.particles.size(), 4u);
     compare(glass, 14, 0, counts);
@@ -188,14 +189,14 @@ TEST(BondNodes, ThatAreBrokenMayBeAnywhereAndOthersMayNot) {
 }
 
 TEST(BondNodes, WiderThanAWordAreRefused) {
-  const Body body(kGlass, {}, Arch());
+  const BondedCase body(kGlass, {}, Arch());
   EXPECT_EQ(refused_with<InputError>([&] { emu::check_words(body.c.setup.plan, 400); }),
             "a record of " + std::to_string(body.c.setup.plan.words.particle_bits) + " bits, " +
                 std::to_string(body.c.setup.plan.words.bonds) +
                 " bonds among them: the cycle-accurate engines hold at most 400");
   Arch wide;
   wide.link_bits = 513;
-  const Body beats(kPlastic, {}, wide);
+  const BondedCase beats(kPlastic, {}, wide);
   EXPECT_GT(beats.c.setup.plan.words.particle_bits, 513);
   EXPECT_EQ(refused_with<InputError>([&] { emu::check_words(beats.c.setup.plan); }),
             "a beat of 513 bits: the cycle-accurate engines hold at most 512\n  hint: use fewer link.bits");

@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(RuleRtlBonds, OfSpringsThatBreakAreGoldens) {
   Arch arch;
   arch.filter_lanes = 3, arch.force_pipes = 2, arch.queue_depth = 4, arch.link_bits = 60;
-  const Body body(kSprings, {Vec3(900, 700, 500), 60, 0}, arch, 5);
+  const BondedCase body(kSprings, {Vec3(900, 700, 500), 60, 0}, arch, 5);
   expect_golden(body.c, false);
   Golden golden = golden_of(body.c.setup);
   const State before = golden.state();
@@ -92,9 +92,9 @@ TEST(RuleRtlBonds, AreGoldens) {
   Arch pipes;
   pipes.filter_lanes = 3, pipes.force_pipes = 2, pipes.link_bits = 60;
   for (const Arch& arch : {Arch(), pipes}) {
-    expect_golden(Body(kGlass, {Vec3::Zero(), 10, 0.02}, arch, 12).c, false);
-    expect_golden(Body(kGlass, {Vec3::Zero(), 10, 0.3}, arch, 8).c, true);
-    expect_golden(Body(kPlastic, {Vec3(900, 700, 500), 5, 0}, arch, 8).c, false);
+    expect_golden(BondedCase(kGlass, {Vec3::Zero(), 10, 0.02}, arch, 12).c, false);
+    expect_golden(BondedCase(kGlass, {Vec3::Zero(), 10, 0.3}, arch, 8).c, true);
+    expect_golden(BondedCase(kPlastic, {Vec3(900, 700, 500), 5, 0}, arch, 8).c, false);
   }
 }
 

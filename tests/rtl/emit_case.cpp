@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // emit_case NAME DIR [STEPS]: emits the project of a test case (tests/support/cases.h; random_<seed>,
 // random_flat_<seed> and random_brick_<seed> are random ones, `example` the committed one, `rule` a rule of
-// text). Behind a name
-// ".narrow": with narrow memories;
-// ".arrival": with halos on arrival. emit_case --kinds prints names that between them have every kind of
-// node.
+// text, `bonds` one of bonds). Behind a name ".narrow": with narrow memories; ".arrival": with halos on
+// arrival. emit_case --kinds prints names that between them have every kind of node.
 #include <cstdio>
 #include <string>
 
 #include "hw/rtl/rtl_emit.h"
+#include "tests/backend/bond_cases.h"
 #include "tests/backend/rule_cases.h"
 #include "tests/support/block.h"
 #include "tests/support/cases.h"
@@ -39,6 +38,12 @@ cuboct::test::Case rule() {
       {}, 3);
 }
 
+// Four particles with bonds that break.
+cuboct::test::Case bonds() {
+  using namespace cuboct::test;
+  return BondedCase(of_four(kSprings), {cuboct::Vec3(2000, 0, 0), 20, 0.02}, {}, 1).c;
+}
+
 bool take_end(std::string& name, const std::string& end) {
   if (!name.ends_with(end)) return false;
   name.erase(name.size() - end.size());
@@ -51,6 +56,7 @@ cuboct::test::Case case_of(std::string name) {
   if (take_end(name, ".arrival")) return with_halos_on_arrival(case_of(name));
   if (name == "example") return example();
   if (name == "rule") return rule();
+  if (name == "bonds") return bonds();
   const auto seeded = [&](const std::string& start) { return std::stoull(name.substr(start.size())); };
   if (name.starts_with("random_flat_")) return random_flat_case(seeded("random_flat_"));
   if (name.starts_with("random_brick_")) return random_brick_case(seeded("random_brick_"));
