@@ -3,13 +3,14 @@
 # Makes tables of docs/measured anew: synth-nodes-TARGET, what a node of five scenes takes on a target; with "small" in place
 # of a target rtl-small-fpgas, a node on two small FPGAs as placed with three seeds; with "ecp5-placed" synth-ecp5-placed,
 # the estimate beside nodes that were placed; with "boards" board-examples, what the examples of boards take; with "solids"
-# halo-clock, machines for solids and their steps per second. Some thirty minutes.
+# halo-clock, machines for solids and their steps per second; with "rules" synth-rules, nodes of rules of text. Some fifty
+# minutes.
 # usage: docs/synth_table.sh BUILD_DIRECTORY [TARGET...]
 set -euo pipefail
 build=$1 cuboct=$1/cuboct
 shift
 targets=("$@")
-[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed boards solids)
+[ $# -gt 0 ] || targets=(ecp5-85 xc7 small ecp5-placed boards solids rules)
 docs=$(dirname "${BASH_SOURCE[0]}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -118,6 +119,31 @@ PYTHON
   done
 }
 
+# Nodes of rules of text, whether they fit or not; the energy of a particle-step by the band of a technology.
+rules() {
+  local scene
+  printf '%s\t' 'node of' rounds 'cycles per step' LUT FF DSP BRAM 'clock, estimated, MHz' 'steps/s' \
+    'nJ per particle-step, cmos45' 'cmos7'
+  printf 'RTL\n'
+  for scene in heat copper glass langevin dpd; do
+    emit "$scene" "rules/$scene"
+    "$cuboct" synth "$work/$scene" --target ecp5-85 --no-place > "$work/synth.log" 2>&1 || [ $? = 2 ]
+    "$cuboct" energy "$docs/../scenes/rules/$scene.toml" --steps 5 --json > "$work/$scene.energy"
+    python3 - "$work" "$scene" "$(digest "$work/$scene")" <<'PYTHON'
+import json, sys
+work, scene, digest = sys.argv[1:]
+read = lambda path: json.load(open(f"{work}/{path}"))
+r, project, machine = read(f"{scene}/synth/ecp5-85/node/report.json"), read(f"{scene}/project.json"), read(f"{scene}.energy")["machines"][0]
+uses, cycles = r["block"]["uses"], r["cycles_per_step"]["counted"]["mean"]
+mhz = r["estimate"]["mhz"] if "estimate" in r else None
+energy = [[joules * 1e9 for joules in t["joules_per_particle_step"]] for t in machine["technologies"]]
+print(scene, project["rule"]["rounds"], f"{cycles:.0f}", *(f"{uses[k]:,}" for k in ("LUT", "FF", "DSP", "BRAM")),
+      f"{mhz:.0f}" if mhz else "-", f"{mhz * 1e6 / cycles:,.0f}" if mhz else "-",
+      *(f"{low:.3g} to {high:.3g}" for low, high in energy), digest, sep="\t")
+PYTHON
+  done
+}
+
 # What the calibration's own test prints.
 placed() {
   printf '%s\t' 'node of, on LFE5U-25F' 'placed, MHz, by seeds' 'estimated before these were known' 'estimated' error \
@@ -131,6 +157,7 @@ for target in "${targets[@]}"; do
     small) table=rtl-small-fpgas tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=small ;;
     solids) table=halo-clock tools=$yosys rows=solids ;;
     boards) table=board-examples tools="$yosys, nextpnr-ice40 $(dpkg-query -W -f '${Version}' nextpnr-ice40)" rows=boards ;;
+    rules) table=synth-rules tools=$yosys rows=rules ;;
     ecp5-placed) table=synth-ecp5-placed tools="placed by nextpnr-ecp5 0.8, netlists by $yosys" rows=placed ;;
     *) table=synth-nodes-$target tools=$yosys rows=nodes ;;
   esac

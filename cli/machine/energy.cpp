@@ -34,7 +34,7 @@ EnergyMachine machine_of(const EnergyOptions& options, const std::string& arch, 
                          const std::vector<Technology>& technologies) {
   Input input = options.input;
   input.arch = arch;
-  const Loaded loaded = load(input);
+  const Loaded loaded = load_machine(input);
   const Plan& plan = loaded.setup.plan;
   check_held(loaded.scene, plan);
   constexpr uint64_t kMostWork = 20'000'000;  // particles times steps
@@ -49,7 +49,7 @@ EnergyMachine machine_of(const EnergyOptions& options, const std::string& arch, 
   m.steps = run->cycles.steps;
   m.cycles = run->cycles.cycles;
   m.events = sum(run->nodes);
-  m.updates = m.events.updates;
+  m.updates = m.events.updates / plan.rounds.size();  // a particle has one in each round
   m.traffic = memory_traffic(plan, m.events);
   for (const Technology& t : technologies)
     m.findings.push_back({t.name, t.title, energy_of(plan, m.events, m.traffic, m.cycles, clock, t),

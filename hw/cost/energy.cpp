@@ -65,7 +65,9 @@ void check_counts(const Plan& plan, const MachineEvents& e, std::span<const Memo
 
 void add_datapath(Sheet& sheet, const Plan& plan, const MachineEvents& e) {
   const DatapathWork work = datapath_work(plan);
-  const auto pairs = static_cast<double>(e.pairs), updates = static_cast<double>(e.updates),
+  // The work is one pair's and one particle's, of all rounds together.
+  const auto rounds = static_cast<double>(plan.rounds.size());
+  const auto pairs = static_cast<double>(e.pairs) / rounds, updates = static_cast<double>(e.updates) / rounds,
              tests = static_cast<double>(e.candidates) * plan.arch.filter_lanes;
   sheet.add("pairs: products", pairs, "pairs", Constant::multiply_bit2, exact(work.pair.bit_products()));
   sheet.add("pairs: adders", pairs, "pairs", Constant::add_bit, exact(work.pair.adder_bits));
@@ -122,19 +124,35 @@ void add_wires(Sheet& sheet, const Plan& plan, const MachineEvents& e, std::span
       fmt::format("wires within nodes: the area of a node is not known in {}", technology.name));
 }
 
-// Memories of a node, words wide; those of narrow memories as one.
-std::vector<NodeMemory> memories_of(const Plan& plan) {
+struct MemoryBits {
+  double memories = 0, tables = 0;
+};
+
+// Of a node; words of narrow memories fill one.
+MemoryBits memory_bits_of(const Plan& plan) {
   const Arch& arch = plan.arch;
-  if (!arch.narrow_memories)
-    return NodeMemories(plan.rule, arch, plan.particles).of(arch.brick, arch.filter_lanes, arch.force_pipes);
-  const auto bits = static_cast<uint64_t>(memory_bits(plan));
-  return {{"memories", bits / static_cast<uint64_t>(plan.words.link_bits) + 1, plan.words.link_bits}};
+  MemoryBits bits;
+  const DatapathWork work = datapath_work(plan);
+  bits.tables = arch.force_pipes * work.pair.table_bits() + work.update.table_bits();
+  if (plan.program != nullptr) {
+    for (const MemoryTraffic& m : memory_traffic(plan, {}))
+      bits.memories += static_cast<double>(m.words) * m.bits * m.copies;
+    bits.memories -= bits.tables;
+  } else if (arch.narrow_memories) {
+    const double link = plan.words.link_bits;
+    bits.memories = (std::floor(memory_bits(plan) / link) + 1) * link;
+  } else {
+    const NodeMemories memories(plan.rule, arch, plan.particles);
+    for (const NodeMemory& m : memories.of(arch.brick, arch.filter_lanes, arch.force_pipes))
+      bits.memories += static_cast<double>(m.words) * m.bits * m.copies;
+  }
+  return bits;
 }
 
 struct NodeBits {
-  double memories = 0, tables = 0;  // bits
-  Band transistors;                 // of logic
-  Band registers;                   // bits
+  MemoryBits memory;
+  Band transistors;  // of logic
+  Band registers;    // bits
 };
 
 // A product that is made a bit a cycle takes an adder of its operands at least.
@@ -158,9 +176,7 @@ Band transistors_of(const Plan& plan) {
 
 NodeBits node_bits(const Plan& plan) {
   NodeBits node;
-  for (const NodeMemory& m : memories_of(plan))
-    node.memories += static_cast<double>(m.words) * m.bits * m.copies;
-  node.tables = plan.arch.force_pipes * datapath_work(plan).pair.table_bits();
+  node.memory = memory_bits_of(plan);
   node.transistors = transistors_of(plan);
   node.registers = register_bits(plan);
   return node;
@@ -180,7 +196,7 @@ void add_idle(Sheet& sheet, const Plan& plan, double cycles, double clock, const
   }
   sheet.add("leakage of logic", seconds, "s", Constant::leakage_transistor, nodes * node.transistors);
   sheet.add("leakage of memories", seconds, "s", Constant::leakage_memory_bit,
-            exact(nodes * (node.memories + node.tables)));
+            exact(nodes * (node.memory.memories + node.memory.tables)));
   energy.missing.emplace_back("leakage of registers: no figure of one apart from its energy");
 }
 
@@ -188,15 +204,18 @@ void add_idle(Sheet& sheet, const Plan& plan, double cycles, double clock, const
 
 // What synthesised nodes have of flip-flops over what their datapath and links need at least: with wide
 // memories 2.0 to 3.0 times, with narrow ones, which have neither filter nor queue, 1.2 and 1.5; both widened
-// (docs/measured/energy.md). The rest is delays, control, ports of memories.
+// (docs/measured/energy.md). The rest is delays, control, ports of memories. Nodes of rules of text, whose
+// pipelines count all their delays and whose receivers count too, have 1.13 to 2.2 times
+// (docs/measured/synth.md).
 Band register_bits(const Plan& plan) {
-  constexpr Band kWide{1.9, 3.2}, kNarrow{1.1, 1.6};
+  constexpr Band kWide{1.9, 3.2}, kNarrow{1.1, 1.6}, kRounds{1.05, 2.4};
   const DatapathWork work = datapath_work(plan);
   const Arch& arch = plan.arch;
   const double bits = arch.force_pipes * work.pair.register_bits +
                       arch.streamers * arch.filter_lanes * work.lane.register_bits +
                       faces(plan) * work.cull.register_bits + work.update.register_bits +
                       2 * faces(plan) * (beat_bits(plan) + 1);
+  if (plan.program != nullptr) return (bits + faces(plan) * plan.words.particle_bits) * kRounds;
   return bits * (arch.narrow_memories ? kNarrow : kWide);
 }
 
@@ -238,12 +257,12 @@ Area area_of(const Plan& plan, const Technology& technology) {
     area.rows.push_back({part, nodes * kMm2 * (count * figure->band), figure->source});
     area.sum += area.rows.back().mm2;
   };
-  add("memories", exact(node.memories), Constant::memory_bit_area);
-  add("tables", exact(node.tables), Constant::memory_bit_area);
+  add("memories", exact(node.memory.memories), Constant::memory_bit_area);
+  add("tables", exact(node.memory.tables), Constant::memory_bit_area);
   // At least one transistor a bit, as a table may be a ROM.
   if (const auto& transistor = technology.at(Constant::transistor_area); whole && transistor) {
     Band& tables = area.rows.back().mm2;
-    const double least = std::min(tables.low, nodes * kMm2 * node.tables * transistor->band.low);
+    const double least = std::min(tables.low, nodes * kMm2 * node.memory.tables * transistor->band.low);
     area.sum.low += least - tables.low;
     tables.low = least;
   }

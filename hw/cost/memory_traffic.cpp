@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "hw/cost/node_memories.h"
+#include "hw/cost/rule_work.h"
 
 namespace cuboct {
 namespace {
@@ -48,6 +49,7 @@ void add_table(const char* holds, const FixedTable& table, const Plan& plan, uin
 }  // namespace
 
 std::vector<MemoryTraffic> memory_traffic(const Plan& plan, const MachineEvents& e) {
+  if (plan.program != nullptr) return rule_traffic(plan, e);
   const Arch& arch = plan.arch;
   const auto pipes = static_cast<uint64_t>(arch.force_pipes);
   const bool narrow = arch.narrow_memories;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "hw/cost/rule_work.h"
 #include "hw/rtl/rtl_design.h"
 #include "model/base/fixed_math.h"
 #include "model/contract/format_cures.h"
@@ -137,6 +138,11 @@ int kick_bits(const FixedRule& rule) {
 
 DatapathWork datapath_work(const Plan& plan, WorkOf of) {
   const int axes = of == WorkOf::cost ? 3 : plan.rule.axes;
+  if (plan.program != nullptr) {
+    DatapathWork work = rule_work(plan);
+    if (plan.words.bonds == 0) work.lane = lane_of(plan, axes, of);
+    return work;
+  }
   DatapathWork work{pair_of(plan, axes), lane_of(plan, axes, of), update_of(plan, axes), {}};
   if (of == WorkOf::built) work.cull = cull_of(plan, axes, work.lane);
   return work;

@@ -43,12 +43,13 @@ class Tally {
         all_.choice_bits += int64_t{of.bits} * step(of.inputs[1]).bits;
         break;
       case Kind::product:
-        ++all_.products, all_.register_bits += held(done);
+        all_.products.push_back({step(of.inputs[0]).bits, step(of.inputs[1]).bits});
+        all_.register_bits += held(done);
         break;
       case Kind::rom:
         all_.register_bits += 2 * held(done);
-        all_.rom_bits +=
-            held(done) * static_cast<int64_t>(graph_.tables[static_cast<size_t>(of.table)].c0.size());
+        all_.roms.push_back({static_cast<int64_t>(graph_.tables[static_cast<size_t>(of.table)].c0.size()),
+                             static_cast<int>(held(done))});
         break;
       default:
         break;
@@ -62,6 +63,12 @@ class Tally {
 };
 
 }  // namespace
+
+int64_t Resources::rom_bits() const {
+  int64_t bits = 0;
+  for (const Rom& rom : roms) bits += rom.words * rom.bits;
+  return bits;
+}
 
 Resources resources_of(const graph::Graph& graph, const Schedule& schedule) {
   return Tally(graph, schedule).all();

@@ -16,9 +16,6 @@ int slot_bits(const Plan& plan) {
   return std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(plan.arch.capacity - 1))));
 }
 
-// Bits of two's complement that hold a value of this form.
-int signed_bits(const pipeline::Form& form) { return form.bits + (form.is_signed ? 0 : 1); }
-
 }  // namespace
 
 using pipeline::Form;
@@ -77,24 +74,6 @@ std::string RulePrinter::declared_outputs(const pipeline::Schedule& schedule,
   return text + "    logic made;\n";
 }
 
-int RulePrinter::kick_bits(int round, int sum) const {
-  const graph::Round& r = program_.rounds[at(round)];
-  int bits = 1;
-  for (size_t c = 0; c < r.sums[at(sum)].terms.size(); ++c)
-    bits = std::max(
-        bits, signed_bits(form_of_output(pair_schedules_[at(round)], r.place(sum) + static_cast<int>(c))));
-  return bits;
-}
-
-int RulePrinter::sum_bits(int round, int sum) const {
-  const graph::Round& r = program_.rounds[at(round)];
-  int bits = kick_bits(round, sum);
-  for (const int term : r.sums[at(sum)].terms)
-    bits = std::max(
-        bits, signed_bits(pipeline::form_of(graph::summed(r.pair.nodes[at(term)].range, program_.partners))));
-  return bits;
-}
-
 std::string RulePrinter::fault_of(const pipeline::Schedule& schedule, const FaultNets& nets,
                                   const std::string& valid, int stage) {
   if (schedule.steps.fault < 0)
@@ -102,7 +81,7 @@ std::string RulePrinter::fault_of(const pipeline::Schedule& schedule, const Faul
                        nets.code, nets.number);
   const Form code = form_of_step(schedule, schedule.steps.fault_code),
              number = form_of_step(schedule, schedule.steps.fault_number);
-  number_bits_ = std::max(number_bits_, signed_bits(number));
+  number_bits_ = std::max(number_bits_, pipeline::signed_bits(number));
   return fmt::format(
       "    assign {0} = {1} && fault_valid;\n"
       "    assign {2} = {{4'd{3}, {4}}} & {{8 {{{0}}}}};\n"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hw/pipeline/print.h"
+#include "hw/pipeline/sum_bits.h"
 #include "hw/plan/plan.h"
 #include "hw/rtl/rule_words.h"
 #include "model/program/integer_program.h"
@@ -62,8 +63,12 @@ class RulePrinter {
   static pipeline::Form form_of_output(const pipeline::Schedule& schedule, int output) {
     return form_of_step(schedule, schedule.steps.outputs[static_cast<size_t>(output)].step);
   }
-  int sum_bits(int round, int sum) const;
-  int kick_bits(int round, int sum) const;
+  int kick_bits(int round, int sum) const {
+    return pipeline::kick_bits(program_.rounds[at(round)], pair_schedules_[at(round)], sum);
+  }
+  int sum_bits(int round, int sum) const {
+    return pipeline::sum_bits(program_, program_.rounds[at(round)], pair_schedules_[at(round)], sum);
+  }
 
   const Plan& plan_;
   const graph::FixedProgram& program_;

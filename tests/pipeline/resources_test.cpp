@@ -23,11 +23,11 @@ TEST(PipelineResources, OfAProductAndASum) {
   const pipeline::Schedule schedule = pipeline::schedule_of(graph, {sum});
   const pipeline::Resources r = pipeline::resources_of(graph, schedule);
   EXPECT_EQ(r.cycles, 2);
-  EXPECT_EQ(r.products, 1);
+  EXPECT_EQ(r.products.size(), 1u);
   EXPECT_EQ(r.adder_bits, 16);  // [-128 127 - 128, 128 128 + 127] has 16 bits
   EXPECT_EQ(r.register_bits, 16 + 8 + 16 + 2);
   EXPECT_EQ(r.choice_bits, 0);
-  EXPECT_EQ(r.rom_bits, 0);
+  EXPECT_EQ(r.rom_bits(), 0);
 }
 
 // Of a square of 30 bits without a sign the two halves and, once, both: three multipliers. Their sum skips
@@ -37,7 +37,7 @@ TEST(PipelineResources, OfASquare) {
   const int x = b.input(Source::own_field, 0, 0, {0, (1 << 30) - 1}), square = b.mul(x, x);
   const graph::Graph graph = b.take();
   const pipeline::Resources r = pipeline::resources_of(graph, pipeline::schedule_of(graph, {square}));
-  EXPECT_EQ(r.products, 3);
+  EXPECT_EQ(r.products.size(), 3u);
   EXPECT_EQ(r.adder_bits, 60 - 18);
 }
 
@@ -53,7 +53,7 @@ TEST(PipelineResources, OfWhatIsLookedAtAlone) {
   EXPECT_EQ(of_part.register_bits, 0);
   const pipeline::Resources r =
       pipeline::resources_of(graph, pipeline::schedule_of(graph, {part, product, power}));
-  EXPECT_EQ(r.products, 0);
+  EXPECT_EQ(r.products.size(), 0u);
   EXPECT_EQ(r.choice_bits, 3 * 8);
 }
 
