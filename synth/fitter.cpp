@@ -90,8 +90,7 @@ Plan Fitter::plan_at(const FitPoint& point) const {
   arch.brick = point.brick;
   arch.filter_lanes = point.lanes;
   arch.force_pipes = point.pipes;
-  return make_plan(base_.plan.rule, std::move(arch), base_.plan.lattice, base_.plan.origin,
-                   base_.plan.particles);
+  return on_machine(base_.plan, std::move(arch));
 }
 
 FitAmounts Fitter::memories(const Cell& brick, int lanes, int pipes, Family family) {

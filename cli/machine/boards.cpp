@@ -47,7 +47,7 @@ DeviceLinkKind link_of(const BoardsOptions& options) {
 Plan on_boards(const Plan& plan, const DeviceCut& boards) {
   Arch arch = plan.arch;
   arch.boards = boards;
-  return make_plan(plan.rule, std::move(arch), plan.lattice, plan.origin, plan.particles);
+  return on_machine(plan, std::move(arch));
 }
 
 // Mean cycles per step, and the number of steps.
@@ -129,7 +129,7 @@ int boards(const BoardsOptions& options) {
   catch_interrupts();
   check(options);
   if (options.steps == uint64_t{0}) throw InputError("--steps: no step, no cycles", "--steps 20");
-  const Loaded loaded = load(options.input);
+  const Loaded loaded = load_machine(options.input);
   const Plan& plan = loaded.setup.plan;
   check_held(loaded.scene, plan);
   if (plan.arch.boards.several())

@@ -4,7 +4,9 @@
 #include "cli/answer.h"
 #include "cli/machine/boards.h"
 #include "hw/rtl/rtl_emit.h"
+#include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/program/integer_program.h"
 #include "synth/fit_measure.h"
 #include "synth/fit_model.h"
 #include "synth/target.h"
@@ -20,14 +22,15 @@ Plan two_nodes(const Plan& plan) {
   for (int32_t z = 0; z < brick[2]; ++z)
     for (int32_t y = 0; y < brick[1]; ++y)
       for (int32_t x = 0; x < 2 * brick[0]; ++x) cells.push_back({x, y, z});
-  return make_plan(plan.rule, plan.arch, Lattice(std::move(cells), {}), plan.origin, plan.particles);
+  return on_machine(plan, plan.arch, Lattice(std::move(cells), {}));
 }
 
 synth::Measured measure(const Plan& plan, const synth::Target& target) {
   catch_interrupts();
   try {
     const Plan pair = two_nodes(plan);
-    const State one{0, {Particle{}}};  // for the project's bench; no RTL depends on it
+    State one{0, {Particle{}}};  // for the project's bench; no RTL depends on it
+    if (plan.program != nullptr) one.fields.resize(static_cast<size_t>(plan.program->program.numbers()));
     return synth::Meter(target, [](const std::string&) {})
         .measure([&](const std::string& directory) { emit_rtl(pair, one, directory); }, false);
   } catch (const synth::ToolFailed& error) {
@@ -44,6 +47,9 @@ DeviceRoom device_room(const Plan& plan, const std::string& name) {
   if (target.family == synth::Family::asic)
     throw InputError(fmt::format("--device {}: standard cells have no limit", name),
                      "an FPGA, such as --device ecp5-85; or --nodes N");
+  if (plan.words.bonds > 0)
+    throw InputError(fmt::format("--device {}: nodes of a rule with bonds are not built here", name),
+                     "--nodes N: 'cuboct synth' of an emitted project tells how many a device holds");
   const synth::Measured measured = measure(plan, target);
   const FitAmounts node = synth::amounts_of(measured.node), around = synth::amounts_of(measured.around),
                    room = synth::room_of(target);

@@ -196,6 +196,12 @@ uint64_t bounding_cells(const Lattice& lattice) {
   return cells;
 }
 
+Plan on_machine(const Plan& plan, Arch arch, Lattice lattice) {
+  Plan other = make_plan(plan.rule, std::move(arch), std::move(lattice), plan.origin, plan.particles);
+  if (plan.program != nullptr) set_program(other, plan.program);
+  return other;
+}
+
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles) {
   check_arch(arch);
   Plan plan;

@@ -92,6 +92,12 @@ uint64_t bounding_cells(const Lattice& lattice);
 // memories with more than one lane or pipe, or with overlap, ...).
 Plan make_plan(FixedRule rule, Arch arch, Lattice lattice, const Vec3& origin, uint32_t particles);
 
+// The rule and the particles of `plan` on another machine.
+Plan on_machine(const Plan& plan, Arch arch, Lattice lattice);
+inline Plan on_machine(const Plan& plan, Arch arch) {
+  return on_machine(plan, std::move(arch), plan.lattice);
+}
+
 // Gives the plan the words, rounds and latencies of `program`, which it keeps, and the hash that follows.
 void set_program(Plan& plan, std::shared_ptr<const IntegerProgram> program);
 // Why the machine that the plan describes does not run its rule: one line for people. Empty where it does.

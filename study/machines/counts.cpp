@@ -155,8 +155,7 @@ SharedSetup::SharedSetup(const Base& base, const Settings& settings)
       census_(setup_.plan.rule, setup_.plan.lattice, setup_.initial) {}
 
 Plan SharedSetup::plan_of(const Arch& arch) const {
-  const Plan& plan = setup_.plan;
-  return make_plan(plan.rule, with_machine(plan.arch, arch), plan.lattice, plan.origin, plan.particles);
+  return on_machine(setup_.plan, with_machine(setup_.plan.arch, arch));
 }
 
 ExpectedCycles SharedSetup::expected(const Plan& plan) const {

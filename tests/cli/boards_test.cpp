@@ -51,6 +51,25 @@ TEST(BoardsCommand, CountsEachPartitionAsTheEnginesDo) {
   EXPECT_EQ(check.code, 0) << check.out << check.err;
 }
 
+// Two rounds in each step, with the same count as the lattice engine's on the arch that was written.
+TEST(BoardsCommand, CountsRulesOfText) {
+  Bench bench(false);
+  const std::string arch = testing::TempDir() + "boards_rule_arch.toml", scene = "scenes/rules/copper.toml";
+  const Answer answer =
+      bench.cuboct({"boards", scene, "--box", "4,4,2", "--steps", "2", "--write", arch, "--json"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Json row = Json::parse(answer.out)["partitions"][0];
+  EXPECT_GT(row["by_latency"], 0.0);
+  const Answer run = bench.cuboct(
+      {"run", scene, "--engine", "lattice", "--arch", arch, "--cycles", "--steps", "2", "--json"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_NEAR(Json::parse(run.out)["cycles"]["value"], 2 * row["cycles_per_step"].get<double>(), 50);
+  EXPECT_EQ(
+      bench.cuboct({"boards", "scenes/rules/glass.toml", "--device", "ecp5-85"}).err,
+      "--device ecp5-85: nodes of a rule with bonds are not built here\n  hint: --nodes N: 'cuboct synth' of "
+      "an emitted project tells how many a device holds\n");
+}
+
 TEST(BoardsCommand, LinesForPeopleNameAssumptions) {
   const Answer answer = Bench(false).cuboct(boards({"--nodes", "32", "--steps", "2"}));
   ASSERT_EQ(answer.code, 0) << answer.err;

@@ -53,6 +53,20 @@ TEST(EnergyCommand, TermsSumToTheTotal) {
   }
 }
 
+// 864 atoms, which have two rounds in each step.
+TEST(EnergyCommand, ParticlesOfARuleOfTextStepOnceForAllRounds) {
+  const Answer answer = Bench(false).cuboct(
+      {"energy", "scenes/rules/copper.toml", "--steps", "2", "--technology", "cmos45", "--json"});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  const Json out = Json::parse(answer.out);
+  const Json& machine = out["machines"][0];
+  EXPECT_EQ(machine["events"]["updates"], 2 * 2 * 864);
+  const Json& t = machine["technologies"][0];
+  for (const int end : {0, 1})
+    EXPECT_DOUBLE_EQ(t["joules_per_particle_step"][end].get<double>(),
+                     1e-12 * t["picojoules"][end].get<double>() / (2 * 864));
+}
+
 TEST(EnergyCommand, LinesForPeopleHaveBandsSourcesOfDoubtAndNoOrderWithinThem) {
   const Answer answer = Bench(false).cuboct(of({}));
   ASSERT_EQ(answer.code, 0) << answer.err;

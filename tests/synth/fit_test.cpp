@@ -10,6 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "hw/cost/memory_traffic.h"
 #include "hw/plan/setup.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/process.h"
@@ -18,6 +19,8 @@
 #include "synth/json_file.h"
 #include "synth/project.h"
 #include "synth/script.h"
+#include "tests/backend/bond_cases.h"
+#include "tests/backend/rule_cases.h"
 
 namespace cuboct::synth {
 namespace {
@@ -53,6 +56,11 @@ Shapes elaborated(const Plan& plan) {
 
 Shapes counted(const Plan& plan) {
   Shapes shapes;
+  if (plan.program != nullptr) {
+    for (const MemoryTraffic& m : memory_traffic(plan, {}))
+      if (!m.holds.starts_with("table")) shapes[{m.words, m.bits}] += m.copies;
+    return shapes;
+  }
   const NodeMemories memories(plan.rule, plan.arch, plan.particles);
   for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
     shapes[{m.words, m.bits}] += m.copies;
@@ -91,6 +99,15 @@ TEST(FitMemories, OfOtherPlansAreThoseOfTheRtl) {
   EXPECT_EQ(text_of(counted(plain)), text_of(elaborated(plain)));
   const Plan cube = plan_of_scene("two_types", [](Arch& a) { a.brick = {2, 2, 2}, a.capacity = 6; });
   EXPECT_EQ(text_of(counted(cube)), text_of(elaborated(cube)));
+}
+
+TEST(FitMemories, OfOtherPlansOfRulesOfTextAreThoseOfTheRtl) {
+  Arch arch;
+  arch.filter_lanes = 3, arch.force_pipes = 2, arch.capacity = 11;
+  const Plan rounds = test::case_of("four", test::hot(test::kFourRounds), arch, 1).setup.plan;
+  EXPECT_EQ(text_of(counted(rounds)), text_of(elaborated(rounds)));
+  const Plan bonds = test::BondedCase(test::kSprings, {}, arch).c.setup.plan;
+  EXPECT_EQ(text_of(counted(bonds)), text_of(elaborated(bonds)));
 }
 
 TEST(FitMemories, InBlocksOfTheDevice) {
