@@ -87,6 +87,34 @@ TEST(RuleRtlBonds, OfSpringsThatBreakAreGoldens) {
   EXPECT_GT(moved, 10u);
 }
 
+// Constants by type of one and of both; and a layer without a third axis.
+TEST(RuleRtlBonds, OfTypesAndOfLayersAreGoldens) {
+  const std::string rule = R"toml(reach = "1.3 * pitch"
+[rule.particle.T]
+unit = "K"
+range = "[0, 2000] K"
+start = "300 K + 100 K * x.x / pitch"
+[[rule.round]]
+sum.heat = "mass_j / (mass_i + mass_j) * (T_j - T_i)"
+sum.force = "1 kN/m * mass_j / (mass_i + mass_j) * (r - pitch) * d / r"
+finish.T = "T + heat / 30"
+)toml";
+  const std::string materials =
+      "[regions]\nright = { shape = \"half_space\", point = \"[2.5, 0, 0] mm\", normal = \"-x\" }\n"
+      "[[material]]\nname = \"light\"\n[[material]]\nname = \"heavy\"\ndensity = \"19 g/cm^3\"\nregion = "
+      "\"right\"\n";
+  const Case two = case_of("types", hot(rule, materials), {}, 4);
+  ASSERT_EQ(two.setup.plan.program->program.types, 2);
+  expect_golden(two, false);
+  const std::string layer =
+      replaced(replaced(kSprings, "min = \"[0, 0, 0] mm\"\nmax = \"[3.5, 3, 2] mm\"\n",
+                        "min = \"[0, 0, -0.5] mm\"\nmax = \"[5, 4, 0.5] mm\"\n"),
+               "pitch = \"1 mm\"\n", "pitch = \"1 mm\"\naxes = [[1, -1, 0], [1, 1, -2]]\n");
+  const BondedCase sheet(layer, {Vec3(900, 700, 0), 60, 0, true}, {}, 6);
+  ASSERT_EQ(sheet.c.setup.plan.rule.axes, 2);
+  expect_golden(sheet.c, false);
+}
+
 // Glass that is torn apart, a bond that is lost, and a yielding body that goes through the cells.
 TEST(RuleRtlBonds, AreGoldens) {
   Arch pipes;
