@@ -37,6 +37,7 @@ constexpr CommandRow kCommands[] = {
     {"pitch", "find the pitch that keeps a figure within an error", kStudy, &kStudies},
     {"stability", "measure the largest stable time step, beside what theory says", kStudy, &kStudies},
     {"bench", "measure how fast the engines are", "cuboct-bench", nullptr},
+    {"curves", "write what the probes of a run read as comma-separated values", kCore, nullptr},
     {"picture", "draw the frames of a run's directory, of bodies of any size", kCore, nullptr},
     {"report", "make one HTML file of a run's directory", kCore, nullptr},
 };

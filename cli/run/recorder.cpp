@@ -12,11 +12,13 @@
 #include <optional>
 #include <vector>
 
+#include "cli/run/curves.h"
 #include "cli/run/plan_text.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error_parts.h"
 #include "model/base/input_file.h"
 #include "model/base/output.h"
+#include "model/trace/curves_csv.h"
 #include "model/trace/frames.h"
 #include "model/trace/raster.h"
 #include "model/trace/trace_file.h"
@@ -33,9 +35,9 @@ constexpr uint64_t kMost =
     1 << 28;  // a run of so many steps that its hashes take more may well be ended early
 
 // What a run writes, besides run.toml and pictures.
-constexpr const char* kFiles[] = {"trace.h5",       "summary.json",  "plan.txt",
-                                  "frames.xyz",     "frames.xyz.gz", "frames.ase.xyz",
-                                  "frames.dump.gz", "frames.pvd",    "rasters.h5"};
+constexpr const char* kFiles[] = {"trace.h5",      "summary.json",   "plan.txt",       "frames.xyz",
+                                  "frames.xyz.gz", "frames.ase.xyz", "frames.dump.gz", "frames.pvd",
+                                  "rasters.h5",    "curves.csv"};
 
 void refuse_what_is_kept(const RecorderOptions& options) {
   const std::string& directory = options.directory;
@@ -94,7 +96,7 @@ struct Recorder::Impl {
     begun = true;
     for (const char* name :
          {"run.toml", "summary.json", "trace.h5", "trace.part.h5", "rasters.h5", "rasters.part.h5",
-          "frames.xyz", "frames.xyz.gz", "frames.ase.xyz", "frames.dump.gz"})
+          "frames.xyz", "frames.xyz.gz", "frames.ase.xyz", "frames.dump.gz", "curves.csv"})
       fs::remove(path(name));
     remove_vtk(path("frames"));
     write_text(path(kBallast), "");
@@ -220,6 +222,9 @@ void Recorder::finish(const Trace& trace, const Items& summary, const std::strin
   to.packed_xyz.writer.reset();
   to.ase.writer.reset();
   to.lammps.writer.reset();
+  if (to.options.csv)
+    whole("curves.csv",
+          [&] { write_text(to.path("curves.csv"), curves_csv(trace.curves, time_step_of(to.loaded))); });
   whole("summary.json", [&] { write_text(to.path("summary.json"), summary.json()); });
   to.options.record.reached = trace.reached.has_value();
   whole("run.toml", [&] { to.write_state(to.first_error.empty() ? state : "incomplete"); });

@@ -20,6 +20,7 @@ struct RecorderOptions {
   bool resume = false;                            // goes on with the run that the directory holds
   bool force = false;                             // a run that did not end may be replaced
   bool no_states = false;                         // of the frames, rasters alone
+  bool csv = false;                               // curves.csv too
   std::vector<std::string> frames{"xyz", "vtp"};  // for viewers: "xyz", "xyz.gz", "ase", "vtp", "lammps"
   uint32_t raster = 800;                          // pixels along the body
   bool real = false;                              // a run in real numbers

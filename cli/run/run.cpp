@@ -40,7 +40,7 @@ struct RunOptions {
   Answer answer;
   bool steps_given = false, frames_given = false, formats_given = false, no_watch = false, no_states = false,
        si = false, raster_given = false, force = false, anyway = false, quiet = false, verbose = false,
-       view = false, opens = true;
+       view = false, opens = true, csv = false;
 
   // Of the frames' files.
   std::vector<std::string> formats() const {
@@ -61,6 +61,7 @@ struct RunOptions {
     needs_out(no_states, "--no-states");
     needs_out(si, "--si");
     needs_out(view, "--view");
+    needs_out(csv, "--csv");
     if (out.empty() && engines.keeps_checkpoints())
       throw InputError(fmt::format("{} needs --out DIR, where the checkpoint lies",
                                    engines.resume ? "--resume" : "--checkpoint-every"));
@@ -171,6 +172,7 @@ Ended run_once(const RunOptions& given) {
     kept.raster = options.raster;
     kept.real = real;
     kept.si = options.si;
+    kept.csv = options.csv;
     kept.cycles = counts_cycles(options);
     kept.rest = rest_of(options, loaded, request.steps, request.probes.size());
     kept.see = [&](const Frame& frame) {
@@ -294,6 +296,7 @@ void add_run(Command& app, int& exit_code) {
       .given(options->raster_given);
   command.flag("--no-states", options->no_states,
                "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");
+  command.flag("--csv", options->csv, "DIR holds the curves as comma-separated values too: curves.csv");
   command.flag("--si", options->si, "the trace in DIR holds positions and velocities in m and m/s as well");
   command.flag("--no-watch", options->no_watch,
                "do not look for what makes a run wrong (docs/reference/failures.md)");

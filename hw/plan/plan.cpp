@@ -258,10 +258,9 @@ std::string describe(const Plan& plan) {
                      t.degree, t.value_frac));
     line("worst force error", fmt::format("{:.3g} N at r = {:.6g} m ({:.3g} of the largest force)",
                                           r.error().worst_force, r.error().at, r.error().relative));
-  }
-  if (plan.program == nullptr)
     line("halo record", fmt::format("{} bits in {} beat{} of {}", plan.words.halo_bits, plan.words.halo_beats,
                                     plan.words.halo_beats == 1 ? "" : "s", plan.words.link_bits));
+  }
   line("particle word", fmt::format("{} bits in {} beat{}", plan.words.particle_bits,
                                     plan.words.migrate_beats, plan.words.migrate_beats == 1 ? "" : "s"));
   if (const LinkCode& code = plan.link; code.checked())

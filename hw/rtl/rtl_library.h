@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/pipeline, rtl/bus, and of rtl/board
-// with the boards' pins, embedded at build time.
+// The hand-written SystemVerilog modules of rtl/lib, rtl/lattice, rtl/pipeline, rtl/rounds, rtl/bus, and of
+// rtl/board with the boards' pins, embedded at build time.
 #pragma once
 
 #include <string_view>

@@ -69,6 +69,23 @@ class Run:
         """Of the last state what the scene's [rule] shows, by name: (particles,), of vectors (particles, 3)."""
         return self.frames[-1].fields
 
+    def table(self) -> dict[str, NDArray[Any]]:
+        """`curves` with one row for each step at which any of them has a sample, and NaN where one has none: "step", "time" (s), curves.
+
+        `pandas.DataFrame(run.table())` takes it; `cuboct curves` writes the same.
+        """
+        late = False  # behind "energy.step" curves are those of its steps
+        steps = {False: self.curves["step"], True: self.curves.get("energy.step", self.curves["step"])}
+        every = np.union1d(steps[False], steps[True])
+        table = {"step": every, "time": every * self.dt}
+        for name, values in self.curves.items():
+            late = late or name == "energy.step"
+            if name in ("step", "time", "energy.step", "energy.time"):
+                continue
+            table[name] = np.full(len(every), np.nan)
+            table[name][np.searchsorted(every, steps[late])] = values
+        return table
+
     def __repr__(self) -> str:
         return f"<cuboct.Run of {self.steps} steps, {self.engine} engine, hash {self.hash}>"
 

@@ -59,8 +59,8 @@ void write_project(const std::string& dir, const test::Pipeline& p) {
 void print_row(const std::string& dir, const std::string& name, const test::Pipeline& p) {
   const pipeline::Resources r = pipeline::resources_of(p.graph, p.schedule);
   write_project(dir + "/" + p.name, p);
-  fmt::print("{}\t{}\t{}\t{}\t{}\t{}\t{:.1f}\t{}\n", name, r.cycles, r.products.size(), r.adder_bits, r.choice_bits,
-             r.register_bits, static_cast<double>(r.rom_bits()) / 1024,
+  fmt::print("{}\t{}\t{}\t{}\t{}\t{}\t{:.1f}\t{}\n", name, r.cycles, r.products.size(), r.adder_bits,
+             r.choice_bits, r.register_bits, static_cast<double>(r.rom_bits()) / 1024,
              synthesised(dir + "/" + p.name, "node"));
   std::fflush(stdout);
 }

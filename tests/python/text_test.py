@@ -41,6 +41,17 @@ def alike(test, a, b):
 
 
 class Steps(unittest.TestCase):
+    def test_curves_as_a_table(self):
+        run = cuboct.run(scene_file("rules/heat.toml"), steps=6)
+        table = run.table()
+        self.assertEqual(table["step"].tolist(), [0, 2, 4, 6])
+        self.assertEqual(table["time"].tolist(), run.curves["time"].tolist())
+        self.assertEqual(table["left.T"].tolist(), run.curves["left.T"].tolist())
+        # Energies have two samples, of the first and of the last step.
+        self.assertEqual(run.curves["energy.step"].tolist(), [0, 6])
+        self.assertEqual([value != value for value in table["energy.total"]], [False, True, True, False])
+        self.assertNotIn("energy.step", table)
+
     def test_steps_are_one_run(self):
         for name, steps in (("heat", 30), ("glass", 6), ("copper", 6), ("langevin", 10)):
             scene = text(name, probe_every=2)

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/programs.h"
+#include "cli/run/curves.h"
+#include "cli/run/outputs.h"
+#include "hw/program/options.h"
+#include "model/base/error.h"
+#include "model/base/output.h"
+#include "model/base/spelling.h"
+#include "model/trace/curves_csv.h"
+#include "model/trace/guarded_trace.h"
+
+namespace cuboct {
+namespace {
+
+struct CurvesOptions {
+  std::string directory, out;
+  std::vector<std::string> names;
+};
+
+}  // namespace
+
+std::optional<double> time_step_of(const Loaded& loaded) {
+  if (loaded.scene.loading) return {};
+  return loaded.scene.rule.dt;
+}
+
+namespace {
+
+// Of "grip" all curves of that probe, of "grip.force_x" one.
+std::vector<Curve> chosen(const std::vector<Curve>& all, const std::vector<std::string>& names) {
+  if (names.empty()) return all;
+  std::vector<Curve> curves;
+  std::set<std::string> known;
+  for (const Curve& curve : all)
+    known.insert(curve.name), known.insert(curve.name.substr(0, curve.name.find('.')));
+  for (const std::string& name : names) {
+    const size_t before = curves.size();
+    for (const Curve& curve : all)
+      if (curve.name == name || curve.name.starts_with(name + ".")) curves.push_back(curve);
+    if (curves.size() > before) continue;
+    const std::vector<std::string> there(known.begin(), known.end());
+    const std::string near = did_you_mean(name, there);
+    throw InputError(fmt::format("--probe: no curve '{}'", name), near.empty() ? list_of(there) : near);
+  }
+  return curves;
+}
+
+void write_curves(const CurvesOptions& options) {
+  const RunRecord record = read_record(options.directory);
+  const Trace trace = guarded_trace(options.directory + "/trace.h5");
+  if (trace.curves.empty())
+    throw InputError(fmt::format("{} has no curves", options.directory),
+                     "a [[probe]] in the scene, or run.energy_every, makes some");
+  const std::vector<Curve> curves = chosen(trace.curves, options.names);
+  Input input{record.scene, record.arch};
+  input.stage = record.stage;
+  input.from = record.from;
+  const Loaded loaded = load_plan(input, record.engine, trace.state_hash.empty());
+  const std::string csv = curves_csv(curves, time_step_of(loaded));
+  if (options.out.empty())
+    fmt::print("{}", csv);
+  else
+    check_writable(options.out), write_text(options.out, csv);
+}
+
+}  // namespace
+
+void add_curves(Command& app, int&) {
+  auto options = std::make_shared<CurvesOptions>();
+  Command command = add_command(app, "curves");
+  command.option("directory", options->directory, "what 'cuboct run --out' wrote")
+      .required()
+      .type_name("DIR");
+  command
+      .option("--probe", options->names,
+              "one or several, with commas: probes, or their curves; default: all curves")
+      .delimiter(',')
+      .type_name("NAME");
+  command.option("--out", options->out, "the CSV file; default: to the terminal").type_name("FILE");
+  command.callback([options] { write_curves(*options); });
+}
+
+}  // namespace cuboct
