@@ -63,6 +63,15 @@ Loaded load_machine(const Input& input) {
   return loaded;
 }
 
+void check_machine(const Loaded& loaded) {
+  const Plan& plan = loaded.setup.plan;
+  with_places(loaded.scene, plan.arch, [&] {
+    if (const std::string why = machine_refusal(plan); !why.empty())
+      throw InputError("the scene has no machine: " + why)
+          .about({"box.size", "box.cells", "box", "rule.file", "rule"});
+  });
+}
+
 Loaded load_plan(const Input& input, const std::string& engine, bool real) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
   loaded.setup.plan = scene_plan_of(loaded.scene, read_arch(input.arch), engine, real);

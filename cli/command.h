@@ -61,6 +61,8 @@ struct Loaded {
 Loaded load(const Input& input);
 // The same, with rules of text: a plan with their program, and their fields as they begin.
 Loaded load_machine(const Input& input);
+// InputError where no machine runs the scene's rule as the arch asks.
+void check_machine(const Loaded& loaded);
 // The same without `setup.initial`, for engines that take their particles one by one, and scenes of which a
 // second copy would not fit; with the plan that `engine` needs, or what stands for one (scene_plan_of, as is
 // `real`). None is named: the engine that the scene asks for.

@@ -128,7 +128,7 @@ rules() {
   # Of glass a quarter of the plate: more nodes than can be observed at once are not emitted.
   cp -r "$docs/../scenes/rules" "$work/rules"
   sed -i 's/^max = "\[40, /max = "[10, /' "$work/rules/glass.toml"
-  for scene in heat copper glass langevin dpd; do
+  for scene in heat copper glass langevin; do
     "$cuboct" emit "$work/rules/$scene.toml" --out "$work/$scene" > "$work/emit.log"
     "$cuboct" synth "$work/$scene" --target ecp5-85 --no-place > "$work/synth.log" 2>&1 || [ $? = 2 ]
     "$cuboct" energy "$work/rules/$scene.toml" --steps 5 --json > "$work/$scene.energy"

@@ -132,6 +132,7 @@ int boards(const BoardsOptions& options) {
   const Loaded loaded = load_machine(options.input);
   const Plan& plan = loaded.setup.plan;
   check_held(loaded.scene, plan);
+  check_machine(loaded);
   if (plan.arch.boards.several())
     plan.arch.places.fail({"boards"}, "the machine is on several devices already",
                           "leave out [boards]: this command finds it");
@@ -177,6 +178,7 @@ void add_boards(Command& app, int& exit_code) {
   auto options = std::make_shared<BoardsOptions>();
   Command command = add_command(app, "boards");
   options->input.add_to(command);
+  options->input.add_start_to(command);
   command.option("--device", options->device, "FPGA to fill; a node is synthesised for it").type_name("NAME");
   command.option("--nodes", options->nodes, "nodes that a device holds, instead of --device")
       .check(whole_number)

@@ -37,6 +37,7 @@ EnergyMachine machine_of(const EnergyOptions& options, const std::string& arch, 
   const Loaded loaded = load_machine(input);
   const Plan& plan = loaded.setup.plan;
   check_held(loaded.scene, plan);
+  check_machine(loaded);
   constexpr uint64_t kMostWork = 20'000'000;  // particles times steps
   const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
   const auto run =
@@ -82,6 +83,7 @@ void add_energy(Command& app, int& exit_code) {
   auto options = std::make_shared<EnergyOptions>();
   Command command = add_command(app, "energy");
   options->input.add_to(command);
+  options->input.add_start_to(command);
   command.option("--beside", options->beside, "a second machine description, to compare with the first")
       .type_name("FILE");
   command

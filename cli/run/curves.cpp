@@ -28,9 +28,9 @@ struct CurvesOptions {
 
 }  // namespace
 
-std::optional<double> time_step_of(const Loaded& loaded) {
-  if (loaded.scene.loading) return {};
-  return loaded.scene.rule.dt;
+std::string csv_of(const Scene& scene, const std::vector<Curve>& curves) {
+  const bool reduced = scene.boltzmann == 1;
+  return curves_csv(curves, scene.loading ? std::nullopt : std::optional(scene.rule.dt), !reduced);
 }
 
 namespace {
@@ -43,10 +43,13 @@ std::vector<Curve> chosen(const std::vector<Curve>& all, const std::vector<std::
   for (const Curve& curve : all)
     known.insert(curve.name), known.insert(curve.name.substr(0, curve.name.find('.')));
   for (const std::string& name : names) {
-    const size_t before = curves.size();
-    for (const Curve& curve : all)
-      if (curve.name == name || curve.name.starts_with(name + ".")) curves.push_back(curve);
-    if (curves.size() > before) continue;
+    bool found = false;
+    for (const Curve& curve : all) {
+      if (curve.name != name && !curve.name.starts_with(name + ".")) continue;
+      found = true;
+      if (std::ranges::find(curves, curve.name, &Curve::name) == curves.end()) curves.push_back(curve);
+    }
+    if (found) continue;
     const std::vector<std::string> there(known.begin(), known.end());
     const std::string near = did_you_mean(name, there);
     throw InputError(fmt::format("--probe: no curve '{}'", name), near.empty() ? list_of(there) : near);
@@ -55,17 +58,9 @@ std::vector<Curve> chosen(const std::vector<Curve>& all, const std::vector<std::
 }
 
 void write_curves(const CurvesOptions& options) {
-  const RunRecord record = read_record(options.directory);
-  const Trace trace = guarded_trace(options.directory + "/trace.h5");
-  if (trace.curves.empty())
-    throw InputError(fmt::format("{} has no curves", options.directory),
-                     "a [[probe]] in the scene, or run.energy_every, makes some");
+  const Trace trace = read_run(options.directory);
   const std::vector<Curve> curves = chosen(trace.curves, options.names);
-  Input input{record.scene, record.arch};
-  input.stage = record.stage;
-  input.from = record.from;
-  const Loaded loaded = load_plan(input, record.engine, trace.state_hash.empty());
-  const std::string csv = curves_csv(curves, time_step_of(loaded));
+  const std::string csv = csv_of(scene_of_run(options.directory, trace).scene, curves);
   if (options.out.empty())
     fmt::print("{}", csv);
   else

@@ -2,13 +2,16 @@
 // Curves of a run as comma-separated values.
 #pragma once
 
-#include <optional>
+#include <string>
+#include <vector>
 
-#include "cli/command.h"
+#include "model/scene/scene.h"
+#include "model/trace/trace.h"
 
 namespace cuboct {
 
-// s, from a step of a run's curves to the next; nothing where steps are those of static loading.
-std::optional<double> time_step_of(const Loaded& loaded);
+// As curves_csv (model/trace/curves_csv.h): without the time where steps are those of static loading, without
+// units where the scene's are reduced.
+std::string csv_of(const Scene& scene, const std::vector<Curve>& curves);
 
 }  // namespace cuboct

@@ -17,6 +17,7 @@
 #include "model/base/output.h"
 #include "model/config/config.h"
 #include "model/rules/rounds_rule.h"
+#include "model/trace/guarded_trace.h"
 #include "model/trace/trace_file.h"
 
 namespace cuboct {
@@ -173,6 +174,29 @@ RunRecord read_record(const std::string& directory) {
     throw InputError(path, line, column, std::string(error.description()), {},
                      excerpt(line_of(read_config_text(path), line), line, column));
   }
+}
+
+Trace read_run(const std::string& directory) {
+  const RunRecord record = read_record(directory);
+  const std::string file = directory + "/trace.h5";
+  if (!is_file(file))
+    throw InputError(
+        fmt::format("{} holds no trace.h5: its run is '{}'", directory, record.state),
+        "a trace is there when the run has ended; --resume goes on with one that kept a checkpoint");
+  return guarded_trace(file);
+}
+
+Loaded scene_of_run(const std::string& directory, const Trace& trace) {
+  const RunRecord record = read_record(directory);
+  Input input{record.scene, record.arch};
+  input.stage = record.stage;
+  input.from = record.from;
+  Loaded loaded = load_plan(input, record.engine, trace.state_hash.empty());
+  if (trace.plan_hash != loaded.setup.plan.hash)
+    throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",
+                                 directory, trace.plan_hash, record.scene, loaded.setup.plan.hash),
+                     "run the scene again");
+  return loaded;
 }
 
 bool is_over(const RunRecord& record) { return record.state == "finished" || record.state == "stopped"; }

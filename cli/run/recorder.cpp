@@ -18,7 +18,6 @@
 #include "model/base/error_parts.h"
 #include "model/base/input_file.h"
 #include "model/base/output.h"
-#include "model/trace/curves_csv.h"
 #include "model/trace/frames.h"
 #include "model/trace/raster.h"
 #include "model/trace/trace_file.h"
@@ -223,8 +222,7 @@ void Recorder::finish(const Trace& trace, const Items& summary, const std::strin
   to.ase.writer.reset();
   to.lammps.writer.reset();
   if (to.options.csv)
-    whole("curves.csv",
-          [&] { write_text(to.path("curves.csv"), curves_csv(trace.curves, time_step_of(to.loaded))); });
+    whole("curves.csv", [&] { write_text(to.path("curves.csv"), csv_of(to.loaded.scene, trace.curves)); });
   whole("summary.json", [&] { write_text(to.path("summary.json"), summary.json()); });
   to.options.record.reached = trace.reached.has_value();
   whole("run.toml", [&] { to.write_state(to.first_error.empty() ? state : "incomplete"); });

@@ -355,16 +355,9 @@ std::string page_picture(const std::string& png) {
 
 void write_report(const std::string& directory, const std::string& out) {
   const RunRecord record = read_record(directory);
-  Input input{record.scene, record.arch};
-  input.stage = record.stage;
-  input.from = record.from;
-  const Trace trace = guarded_trace(directory + "/trace.h5");
-  const Loaded loaded = load_plan(input, record.engine, trace.state_hash.empty());
+  const Trace trace = read_run(directory);
+  const Loaded loaded = scene_of_run(directory, trace);
   const Plan& plan = loaded.setup.plan;
-  if (trace.plan_hash != plan.hash)
-    throw InputError(fmt::format("{}/trace.h5 was made by plan {:016x}, but {} now gives plan {:016x}",
-                                 directory, trace.plan_hash, record.scene, plan.hash),
-                     "run the scene again");
   const Shots shots(loaded, trace, directory + "/trace.h5");
   std::string html = page_head(loaded.scene.title.empty() ? record.scene : loaded.scene.title);
   html +=

@@ -11,6 +11,7 @@
 #include "hw/cost/node_area.h"
 #include "hw/cost/node_memories.h"
 #include "hw/cost/pair_work.h"
+#include "hw/cost/rule_work.h"
 
 namespace cuboct {
 namespace {
@@ -215,7 +216,8 @@ Band register_bits(const Plan& plan) {
                       arch.streamers * arch.filter_lanes * work.lane.register_bits +
                       faces(plan) * work.cull.register_bits + work.update.register_bits +
                       2 * faces(plan) * (beat_bits(plan) + 1);
-  if (plan.program != nullptr) return (bits + faces(plan) * plan.words.particle_bits) * kRounds;
+  if (plan.program != nullptr)
+    return (bits + faces(plan) * plan.words.particle_bits + bond_register_bits(plan)) * kRounds;
   return bits * (arch.narrow_memories ? kNarrow : kWide);
 }
 

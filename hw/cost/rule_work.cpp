@@ -98,7 +98,7 @@ Work pair_of(const Rounds& rounds, size_t k) {
   work.adder_bits += plan.rule.axes * (plan.rule.widths.position_frac + 3);
   for (int s = 0; s < rounds.sums(k); ++s) work.adder_bits += rounds.bits_of_sum(k, s);
   work.register_bits += rounds.candidate_bits() + (cycles + 1) * (rounds.slot_bits() + 1);
-  // Each place of the row against the candidate's id; its numbers are chosen, and wait.
+  // Each place of the row against the candidate's id; its kind and numbers are chosen, and wait.
   work.adder_bits += bonds * (plan.words.id_bits + kChoice * rounds.bond_bits());
   if (bonds > 0) work.register_bits += (cycles + 1) * (bonds + rounds.bond_bits());
   return work;
@@ -116,7 +116,8 @@ Work finish_of(const Rounds& rounds, size_t k) {
   work.adder_bits += (plan.arch.force_pipes - 1) * total;
   work.register_bits += total + rounds.own_bits() + (of.resources.cycles + 2) * rounds.slot_bits();
   if (plan.words.bonds == 0) return work;
-  // Whether the bonds that were not met count.
+  // Whether the bonds that were not met lead elsewhere, and count.
+  work.adder_bits += plan.words.bonds * plan.words.id_bits;
   work.register_bits += plan.words.bonds;
   if (rounds.program.broken_at >= 0) {
     const Built broken = built(rounds.program.broken, {rounds.program.broken_at});
@@ -147,6 +148,13 @@ DatapathWork rule_work(const Plan& plan) {
   }
   if (plan.words.bonds > 0) work.lane.adder_bits = plan.words.bonds * plan.words.id_bits;
   return work;
+}
+
+double bond_register_bits(const Plan& plan) {
+  int numbers = 0;
+  for (const WordField& f : plan.words.particle)
+    if (f.place == 0 && f.kind == FieldKind::bond_field) numbers += f.bits;
+  return static_cast<double>(plan.arch.capacity) * plan.words.bonds * (1 + numbers);
 }
 
 std::vector<MemoryTraffic> rule_traffic(const Plan& plan, const MachineEvents& e) {

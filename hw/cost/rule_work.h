@@ -16,6 +16,10 @@ namespace cuboct {
 // round, summed over the rounds.
 DatapathWork rule_work(const Plan& plan);
 
+// Bits of registers of a node that hold what its pairs leave of their bonds until the finish: which were met,
+// and their numbers.
+double bond_register_bits(const Plan& plan);
+
 // As memory_traffic (memory_traffic.h), with the tables. What a pair reads and adds to a sum is counted of
 // each issued pair, which is an upper end. A later round's numbers of a halo count as used in its round and
 // those behind it.

@@ -39,12 +39,16 @@ uint64_t lanes_at(const Partition& p, int beat_bits, double bits_per_cycle, int 
   return lanes;
 }
 
-// A rough count of the cycles that the links cost a step, to choose by: two waits along each axis that is cut
-// and the beats of its exchange, of 1, 3 and 9 cells' records.
+// A rough count of the cycles that the links cost a step, to choose by: along each axis that is cut a wait
+// for each round that sends and one for migration, and the beats of the rounds, of 1, 3 and 9 cells' records.
 double cost_of(const Partition& p, const Plan& plan, double particles_per_node) {
-  double cost = 0, beats = particles_per_node * plan.words.halo_beats;
+  int sending = 0;
+  double cost = 0, beats = 0;
+  for (const PlanRound& round : plan.rounds)
+    sending += round.beats > 0, beats += particles_per_node * round.beats;
   for (size_t a = 0; a < 3; ++a, beats *= 3)
-    if (p.links[a] > 0) cost += 2 * p.boards.latency + (p.boards.interval - 1) * (beats + 1);
+    if (p.links[a] > 0)
+      cost += (sending + 1) * p.boards.latency + (p.boards.interval - 1) * (beats + sending);
   return cost;
 }
 

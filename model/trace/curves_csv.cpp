@@ -18,17 +18,17 @@ std::string cell(const std::string& text) {
 
 }  // namespace
 
-std::string curves_csv(const std::vector<Curve>& curves, std::optional<double> dt) {
+std::string curves_csv(const std::vector<Curve>& curves, std::optional<double> dt, bool units) {
   std::set<uint64_t> steps;
   for (const Curve& curve : curves) steps.insert(curve.step.begin(), curve.step.end());
   fmt::memory_buffer out;
   const auto to = std::back_inserter(out);
-  fmt::format_to(to, "step{}", dt ? ",time (s)" : "");
+  fmt::format_to(to, "step{}", !dt ? "" : units ? ",time (s)" : ",time");
   for (const Curve& curve : curves)
-    fmt::format_to(
-        to, ",{}",
-        cell(curve.unit == "1" || curve.unit.empty() ? curve.name
-                                                     : fmt::format("{} ({})", curve.name, curve.unit)));
+    fmt::format_to(to, ",{}",
+                   cell(!units || curve.unit == "1" || curve.unit.empty()
+                            ? curve.name
+                            : fmt::format("{} ({})", curve.name, curve.unit)));
   std::vector<size_t> next(curves.size());
   for (const uint64_t step : steps) {
     fmt::format_to(to, "\n{}", step);

@@ -72,7 +72,7 @@ class Run:
     def table(self) -> dict[str, NDArray[Any]]:
         """`curves` with one row for each step at which any of them has a sample, and NaN where one has none: "step", "time" (s), curves.
 
-        `pandas.DataFrame(run.table())` takes it; `cuboct curves` writes the same.
+        `pandas.DataFrame(run.table())` takes it. With static loading steps are load steps, and "time" means nothing.
         """
         late = False  # behind "energy.step" curves are those of its steps
         steps = {False: self.curves["step"], True: self.curves.get("energy.step", self.curves["step"])}

@@ -67,6 +67,22 @@ TEST(EnergyCommand, ParticlesOfARuleOfTextStepOnceForAllRounds) {
                      1e-12 * t["picojoules"][end].get<double>() / (2 * 864));
 }
 
+// Neither joules nor devices of what no node runs; a stage is chosen.
+TEST(EnergyCommand, RefusesRulesOfTextThatHaveNoMachine) {
+  const Bench bench(false);
+  const std::string arch = bench.path("narrow.toml");
+  std::ofstream(arch) << "name = \"narrow\"\n[node]\nmultipliers = \"serial\"\n";
+  for (const Strings& command : {Strings{"energy"}, Strings{"boards", "--nodes", "8"}}) {
+    Strings words = command;
+    words.insert(words.end(), {"scenes/rules/copper.toml", "--arch", arch});
+    const Answer answer = bench.cuboct(words);
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_NE(answer.err.find("the scene has no machine: shared and serial multipliers"), std::string::npos)
+        << answer.err;
+  }
+  EXPECT_EQ(bench.cuboct({"energy", "scenes/rules/plastic.toml", "--stage", "pull", "--steps", "1"}).code, 0);
+}
+
 TEST(EnergyCommand, LinesForPeopleHaveBandsSourcesOfDoubtAndNoOrderWithinThem) {
   const Answer answer = Bench(false).cuboct(of({}));
   ASSERT_EQ(answer.code, 0) << answer.err;
