@@ -17,7 +17,7 @@ TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
       "no command\n  hint: one of new, check, run, crosscheck, emit, synth, energy, boards, elastic, "
       "multiscale, explore, "
       "fit, learn, pitch, stability, bench, "
-      "picture or report; see 'cuboct --help'\n");
+      "curves, picture or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
                  "unknown command 'simulate'\n  hint: one of new, check, run, crosscheck, emit, synth, "
