@@ -16,7 +16,6 @@
 #include "model/base/output.h"
 #include "model/base/spelling.h"
 #include "model/trace/curves_csv.h"
-#include "model/trace/guarded_trace.h"
 
 namespace cuboct {
 namespace {
@@ -25,15 +24,6 @@ struct CurvesOptions {
   std::string directory, out;
   std::vector<std::string> names;
 };
-
-}  // namespace
-
-std::string csv_of(const Scene& scene, const std::vector<Curve>& curves) {
-  const bool reduced = scene.boltzmann == 1;
-  return curves_csv(curves, scene.loading ? std::nullopt : std::optional(scene.rule.dt), !reduced);
-}
-
-namespace {
 
 // Of "grip" all curves of that probe, of "grip.force_x" one.
 std::vector<Curve> chosen(const std::vector<Curve>& all, const std::vector<std::string>& names) {
@@ -58,9 +48,10 @@ std::vector<Curve> chosen(const std::vector<Curve>& all, const std::vector<std::
 }
 
 void write_curves(const CurvesOptions& options) {
-  const Trace trace = read_run(options.directory);
+  const RunRecord record = read_record(options.directory);
+  const Trace trace = read_run(options.directory, record);
   const std::vector<Curve> curves = chosen(trace.curves, options.names);
-  const std::string csv = csv_of(scene_of_run(options.directory, trace).scene, curves);
+  const std::string csv = csv_of(scene_of_run(options.directory, record, trace).scene, curves);
   if (options.out.empty())
     fmt::print("{}", csv);
   else
@@ -68,6 +59,11 @@ void write_curves(const CurvesOptions& options) {
 }
 
 }  // namespace
+
+std::string csv_of(const Scene& scene, const std::vector<Curve>& curves) {
+  const bool reduced = scene.boltzmann == 1;
+  return curves_csv(curves, scene.loading ? std::nullopt : std::optional(scene.rule.dt), !reduced);
+}
 
 void add_curves(Command& app, int&) {
   auto options = std::make_shared<CurvesOptions>();

@@ -176,8 +176,7 @@ RunRecord read_record(const std::string& directory) {
   }
 }
 
-Trace read_run(const std::string& directory) {
-  const RunRecord record = read_record(directory);
+Trace read_run(const std::string& directory, const RunRecord& record) {
   const std::string file = directory + "/trace.h5";
   if (!is_file(file))
     throw InputError(
@@ -186,8 +185,7 @@ Trace read_run(const std::string& directory) {
   return guarded_trace(file);
 }
 
-Loaded scene_of_run(const std::string& directory, const Trace& trace) {
-  const RunRecord record = read_record(directory);
+Loaded scene_of_run(const std::string& directory, const RunRecord& record, const Trace& trace) {
   Input input{record.scene, record.arch};
   input.stage = record.stage;
   input.from = record.from;

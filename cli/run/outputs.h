@@ -64,9 +64,9 @@ void write_record(const std::string& directory, const RunRecord& record);
 // Paths as they are to be opened now. InputError where the directory holds no run.
 RunRecord read_record(const std::string& directory);
 // The trace of the directory's run. InputError where it did not end.
-Trace read_run(const std::string& directory);
+Trace read_run(const std::string& directory, const RunRecord& record);
 // What it was a run of. InputError where the scene gives another plan now.
-Loaded scene_of_run(const std::string& directory, const Trace& trace);
+Loaded scene_of_run(const std::string& directory, const RunRecord& record, const Trace& trace);
 // Whether a directory's run has come to its end, and all that it left is there.
 bool is_over(const RunRecord& record);
 

@@ -355,8 +355,8 @@ std::string page_picture(const std::string& png) {
 
 void write_report(const std::string& directory, const std::string& out) {
   const RunRecord record = read_record(directory);
-  const Trace trace = read_run(directory);
-  const Loaded loaded = scene_of_run(directory, trace);
+  const Trace trace = read_run(directory, record);
+  const Loaded loaded = scene_of_run(directory, record, trace);
   const Plan& plan = loaded.setup.plan;
   const Shots shots(loaded, trace, directory + "/trace.h5");
   std::string html = page_head(loaded.scene.title.empty() ? record.scene : loaded.scene.title);

@@ -125,35 +125,29 @@ void add_wires(Sheet& sheet, const Plan& plan, const MachineEvents& e, std::span
       fmt::format("wires within nodes: the area of a node is not known in {}", technology.name));
 }
 
-struct MemoryBits {
-  double memories = 0, tables = 0;
-};
-
-// Of a node; words of narrow memories fill one.
-MemoryBits memory_bits_of(const Plan& plan) {
+// Bits of a node's memories but for its tables, which have `tables`; words of narrow memories fill one.
+double memories_of(const Plan& plan, double tables) {
   const Arch& arch = plan.arch;
-  MemoryBits bits;
-  const DatapathWork work = datapath_work(plan);
-  bits.tables = arch.force_pipes * work.pair.table_bits() + work.update.table_bits();
-  if (plan.program != nullptr) {
-    for (const MemoryTraffic& m : memory_traffic(plan, {}))
-      bits.memories += static_cast<double>(m.words) * m.bits * m.copies;
-    bits.memories -= bits.tables;
-  } else if (arch.narrow_memories) {
+  if (plan.program == nullptr && arch.narrow_memories) {
     const double link = plan.words.link_bits;
-    bits.memories = (std::floor(memory_bits(plan) / link) + 1) * link;
-  } else {
-    const NodeMemories memories(plan.rule, arch, plan.particles);
-    for (const NodeMemory& m : memories.of(arch.brick, arch.filter_lanes, arch.force_pipes))
-      bits.memories += static_cast<double>(m.words) * m.bits * m.copies;
+    return (std::floor(memory_bits(plan) / link) + 1) * link;
   }
+  double bits = 0;
+  const auto add = [&bits](const auto& memories) {
+    for (const auto& m : memories) bits += static_cast<double>(m.words) * m.bits * m.copies;
+  };
+  if (plan.program != nullptr) {
+    add(memory_traffic(plan, {}));
+    return bits - tables;
+  }
+  add(NodeMemories(plan.rule, arch, plan.particles).of(arch.brick, arch.filter_lanes, arch.force_pipes));
   return bits;
 }
 
 struct NodeBits {
-  MemoryBits memory;
-  Band transistors;  // of logic
-  Band registers;    // bits
+  double memories = 0, tables = 0;  // bits
+  Band transistors;                 // of logic
+  Band registers;                   // bits
 };
 
 // A product that is made a bit a cycle takes an adder of its operands at least.
@@ -177,7 +171,9 @@ Band transistors_of(const Plan& plan) {
 
 NodeBits node_bits(const Plan& plan) {
   NodeBits node;
-  node.memory = memory_bits_of(plan);
+  const DatapathWork work = datapath_work(plan);
+  node.tables = plan.arch.force_pipes * work.pair.table_bits() + work.update.table_bits();
+  node.memories = memories_of(plan, node.tables);
   node.transistors = transistors_of(plan);
   node.registers = register_bits(plan);
   return node;
@@ -197,7 +193,7 @@ void add_idle(Sheet& sheet, const Plan& plan, double cycles, double clock, const
   }
   sheet.add("leakage of logic", seconds, "s", Constant::leakage_transistor, nodes * node.transistors);
   sheet.add("leakage of memories", seconds, "s", Constant::leakage_memory_bit,
-            exact(nodes * (node.memory.memories + node.memory.tables)));
+            exact(nodes * (node.memories + node.tables)));
   energy.missing.emplace_back("leakage of registers: no figure of one apart from its energy");
 }
 
@@ -259,12 +255,12 @@ Area area_of(const Plan& plan, const Technology& technology) {
     area.rows.push_back({part, nodes * kMm2 * (count * figure->band), figure->source});
     area.sum += area.rows.back().mm2;
   };
-  add("memories", exact(node.memory.memories), Constant::memory_bit_area);
-  add("tables", exact(node.memory.tables), Constant::memory_bit_area);
+  add("memories", exact(node.memories), Constant::memory_bit_area);
+  add("tables", exact(node.tables), Constant::memory_bit_area);
   // At least one transistor a bit, as a table may be a ROM.
   if (const auto& transistor = technology.at(Constant::transistor_area); whole && transistor) {
     Band& tables = area.rows.back().mm2;
-    const double least = std::min(tables.low, nodes * kMm2 * node.memory.tables * transistor->band.low);
+    const double least = std::min(tables.low, nodes * kMm2 * node.tables * transistor->band.low);
     area.sum.low += least - tables.low;
     tables.low = least;
   }
