@@ -10,6 +10,7 @@
 #include "cli/answer.h"
 #include "cli/programs.h"
 #include "cli/run/estimate.h"
+#include "cli/run/packing_text.h"
 #include "cli/run/plan_text.h"
 #include "cli/run/rule_integers.h"
 #include "cli/run/stages.h"
@@ -132,6 +133,7 @@ Items resolve(const Loaded& loaded) {
   items.add("capacity", plan.arch.capacity, "particles/cell");
   items.add("steps", scene.steps);
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
+  add_packing_numbers(items, scene);
   items.add("cutoff", scene.rule.cutoff(), "m");
   items.add("cell edge", rule.cell_edge, "m");
   items.add("mass", rule.mass, "kg", rule.weighted ? "of the lightest particles" : "");
@@ -243,6 +245,7 @@ Items physics(const Loaded& loaded) {
   items.add("scene", scene.path);
   if (!scene.title.empty()) items.add("title", scene.title);
   for (const SynopsisLine& line : synopsis_of(scene)) items.add(line.name, line.text, line.note);
+  add_packing(items, scene);
   if (scene.began) items.add("begins at", start_text(scene, &plan.rule, plan.origin));
   const Estimate cost = estimate(scene, plan, run_size(scene));
   add_rounds(items, scene);
