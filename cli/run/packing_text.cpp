@@ -32,7 +32,9 @@ std::string area_text(const Scene& scene, double area) {
 
 std::string vector_text(const Scene& scene, const Vec3& x) {
   const Multiple unit = scene.boltzmann == 1 ? Multiple{1, ""} : multiple_of(x.cwiseAbs().maxCoeff(), "m");
-  const auto number = [&](double value) { return std::abs(value) < 1e-9 * scene.pitch ? 0.0 : value / unit.unit; };
+  const auto number = [&](double value) {
+    return std::abs(value) < 1e-9 * scene.pitch ? 0.0 : value / unit.unit;
+  };
   return fmt::format("[{:.3g}, {:.3g}, {:.3g}]{}{}", number(x[0]), number(x[1]), number(x[2]),
                      unit.name.empty() ? "" : " ", unit.name);
 }
@@ -75,7 +77,8 @@ std::string layers_text(const Scene& scene, const std::vector<Layers>& layers) {
 
 std::string section_text(const Scene& scene, const PackedSection& section) {
   return fmt::format(
-      "{} across {} at {}, {:.0f} % of the shape's; another place of the packing makes {:.0f} to {:.0f} %, and "
+      "{} across {} at {}, {:.0f} % of the shape's; another place of the packing makes {:.0f} to {:.0f} %, "
+      "and "
       "{:.0f} to {:.0f} % of its bending stiffness",
       area_text(scene, section.mean * section.area.packed), "xyz"[section.axis],
       length_text(scene, section.at), 100 * section.area.packed, 100 * section.area.least,
@@ -134,8 +137,9 @@ void add_packing_numbers(Items& items, const Scene& scene) {
   }
   const auto section = packed_section(*packed);
   if (!section) return;
-  items.add("section", section->mean * section->area.packed, "m^2",
-            fmt::format("across {} at {:.4g} m, by the particles near it", "xyz"[section->axis], section->at));
+  items.add(
+      "section", section->mean * section->area.packed, "m^2",
+      fmt::format("across {} at {:.4g} m, by the particles near it", "xyz"[section->axis], section -> at));
   // Of the shape's; smallest and largest with the packing elsewhere.
   const auto add = [&](const std::string& name, const PackedSection::Share& share) {
     items.add_range(name, share.packed, share.least, share.most, "1");

@@ -11,8 +11,8 @@
 namespace cuboct {
 namespace {
 
-constexpr int kPlaces = 7;       // sections of each axis
-constexpr int kShifts = 16;      // of the packing, across the axis
+constexpr int kPlaces = 7;   // sections of each axis
+constexpr int kShifts = 16;  // of the packing, across the axis
 constexpr double kMostSites = 1e7;
 constexpr double kLeastChange = 0.01;  // of a section that is told
 
@@ -36,7 +36,7 @@ struct Slab {
 };
 
 struct Moments {
-  double area = 0;            // m^2
+  double area = 0;             // m^2
   Vec3 second = Vec3::Zero();  // m^4, about the centre, of distances along each axis
 };
 
@@ -65,16 +65,15 @@ Moments moments_in(const PackedShape& packed, const Slab& slab, const Vec3& shif
 std::vector<Slab> slabs_across(const PackedShape& packed, int axis, int places) {
   const Bounds bounds = packing_bounds(packed.shape.get(), packed.box);
   const Vec3& direction = *packed.along[static_cast<size_t>(axis)];
-  const double spacing = layer_spacing(packed.fcc, direction),
-               length = bounds.high[axis] - bounds.low[axis];
+  const double spacing = layer_spacing(packed.fcc, direction), length = bounds.high[axis] - bounds.low[axis];
   const double layers = std::floor(std::min(period(packed.fcc, direction), length / 2) / spacing + 1e-6);
   if (layers < 1) return {};
   std::vector<Slab> slabs;
   for (int k = 1; k <= places; ++k) {
     const double begin =
         bounds.low[axis] + (length - layers * spacing) * k / (places + 1) - packed.fcc.offset[axis];
-    slabs.push_back({axis, packed.fcc.offset[axis] + (std::round(begin / spacing) - 0.5) * spacing,
-                     layers * spacing});
+    slabs.push_back(
+        {axis, packed.fcc.offset[axis] + (std::round(begin / spacing) - 0.5) * spacing, layers * spacing});
   }
   return slabs;
 }

@@ -42,9 +42,9 @@ struct PackedSection {
 };
 
 // The thinnest of several inner sections across each axis that a move of the packing changes by a hundredth.
-// None in a box that repeats, with very many layers, or with a whole number of them. None across an axis along
-// which the crystal is turned, or the body has less than two layers. Looks at some 10^7 sites at most: at
-// fewer sections where the body is large.
+// None in a box that repeats, with very many layers, or with a whole number of them. None across an axis
+// along which the crystal is turned, or the body has less than two layers. Looks at some 10^7 sites at most:
+// at fewer sections where the body is large.
 std::optional<PackedSection> packed_section(const PackedShape& packed);
 
 }  // namespace cuboct

@@ -19,8 +19,9 @@ std::optional<PackedShape> packed_shape(const Scene& scene) {
   packed.along = choice->along;
   std::array<bool, 3> periodic{};
   // The scene has been read: its box repeats as it must.
-  const SitePeriods sites{[&](size_t a, const ConfigValue&) { return choice->along[a]->norm() * packed.fcc.cell(); },
-                          [](size_t, double) { return true; }};
+  const SitePeriods sites{
+      [&](size_t a, const ConfigValue&) { return choice->along[a]->norm() * packed.fcc.cell(); },
+      [](size_t, double) { return true; }};
   std::tie(packed.box, periodic) = read_box(root, &sites);
   const Regions regions(root);
   if (const auto geometry = root.find("geometry")) packed.shape = read_shape(*geometry, regions);
@@ -29,7 +30,8 @@ std::optional<PackedShape> packed_shape(const Scene& scene) {
   Vec3 low = scene.packing().x.front(), high = low;
   for (const Vec3& x : scene.packing().x) low = low.cwiseMin(x), high = high.cwiseMax(x);
   const Vec3 size = high - low;
-  for (size_t a = 0; a < 3; ++a) packed.free[a] = live[a] && !periodic[a] && size[static_cast<Eigen::Index>(a)] > scene.pitch / 4;
+  for (size_t a = 0; a < 3; ++a)
+    packed.free[a] = live[a] && !periodic[a] && size[static_cast<Eigen::Index>(a)] > scene.pitch / 4;
   for (const ConfigTable& plane : root.tables("symmetry")) {
     const Vec3 normal = plane.at("normal").direction();
     for (size_t a = 0; a < 3; ++a)

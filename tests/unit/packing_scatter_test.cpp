@@ -16,8 +16,8 @@ namespace {
 // Sites of some cells, their heights along the direction, and the least distance between two heights.
 TEST(PackingScatter, LayersAreApartAsSitesAre) {
   const Fcc fcc{.pitch = 1};
-  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 1, -2), Vec3(3, 1, -1), Vec3(2, 1, 0),
-                        Vec3(-1, 1, 0)}) {
+  for (const Vec3& n : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 1, -2), Vec3(3, 1, -1),
+                        Vec3(2, 1, 0), Vec3(-1, 1, 0)}) {
     std::set<int64_t> heights;  // in millionths
     for (const Vec3& x : pack(fcc, nullptr, {.origin = Vec3::Constant(-4), .extent = Vec3::Constant(8)}))
       if (const double height = n.normalized().dot(x); std::abs(height) < 2)
