@@ -78,8 +78,8 @@ InputError no_room(const std::string& scene, const Plan& plan, const Board& boar
                                  counted(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
                                                                    particles * static_cast<double>(cells)))),
                                          "particle"));
-  hint += fmt::format("--fit {} looks for a machine that fits, --unchecked writes this one for the simulator",
-                      board.target);
+  if (!plan.program) hint += fmt::format("--fit {} looks for a machine that fits, ", board.target);
+  hint += "--unchecked writes this one for the simulator";
   return InputError(what, hint);
 }
 
@@ -90,7 +90,7 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
   const Board& board = board_of(choice.name);
   const Target& target = target_of(board.target);
   const FitAmounts room = room_of(target);
-  if (!plan.arch.narrow_memories) {
+  if (!plan.arch.narrow_memories && !plan.program) {
     Counts counts;
     NodeMemories memories(plan.rule, plan.arch, plan.particles);
     for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))

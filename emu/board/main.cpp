@@ -19,6 +19,7 @@ class BoardProgram : public EngineProgram {
     name = "cuboct-fpga";
     description = "Runs a scene on the board behind a serial port";
     abilities.checkpoints = true;
+    abilities.text = true;
     abilities.steps = std::numeric_limits<uint32_t>::max();
   }
 

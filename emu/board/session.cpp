@@ -10,15 +10,15 @@
 #include <tuple>
 
 #include "emu/machine/collector.h"
-#include "emu/machine/words.h"
 #include "hw/rtl/board.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 namespace {
 
 class Session {
  public:
-  Session(Host& host, const Plan& plan) : host_(host), plan_(plan), info_(host.info()) {
+  Session(Host& host, const Plan& plan) : host_(host), plan_(plan), reader_(plan), info_(host.info()) {
     const bool settable = info_.moved_types > 0 && info_.machine_hash == machine_hash(plan);
     if (info_.plan_hash != plan.hash && !settable)
       throw InputError(
@@ -66,18 +66,10 @@ class Session {
     state.step = step;
     for (uint32_t n = 0; n < plan_.nodes(); ++n)
       for (const Word& word : host_.read(static_cast<uint16_t>(n), word_bits())) {
-        const Slot slot = unpack_particle(plan_, word);
-        Particle p;
-        p.id = slot.body.id;
-        p.type = slot.body.type;
-        p.cell = cell_of(n, word.get(plan_.words.particle_bits, plan_.bricks.cell_bits()));
-        p.x = position_of(plan_.rule.widths, slot);
-        p.v = slot.body.v;
-        p.u = slot.u;
-        state.particles.push_back(p);
+        const uint64_t cell = word.get(plan_.words.particle_bits, plan_.bricks.cell_bits());
+        reader_.add(reader_.read(word, cell_of(n, cell), step), state);
       }
-    std::sort(state.particles.begin(), state.particles.end(),
-              [](const Particle& a, const Particle& b) { return a.id < b.id; });
+    sort_by_id(state);
     for (size_t k = 0; k < state.particles.size(); ++k)
       if (state.particles[k].id != k || state.particles.size() != plan_.particles)
         throw std::runtime_error(
@@ -89,20 +81,28 @@ class Session {
   // The least fault of the one step that the board has run since it held a state after `step`.
   StopReason stop(uint64_t step) {
     StopReason least;
-    // Above the particle's id is the cell.
-    const int id_bits = plan_.words.id_bits;
+    uint64_t least_stage = 0;
+    // Above the particle's id is the cell, and above that the stage of a rule of text.
+    const int id_bits = plan_.words.id_bits, cell_bits = plan_.bricks.cell_bits();
+    const auto part = [](uint64_t told, int lsb, int bits) {
+      return told >> lsb & ((uint64_t{1} << bits) - 1);
+    };
     for (uint32_t n = 0; n < plan_.nodes(); ++n) {
       const BoardFault found = host_.fault(static_cast<uint16_t>(n));
       if (found.fault == Fault::none) continue;
       const uint64_t told = found.particle;
       const StopReason reason{found.fault,
                               step,
-                              faulty_cell(n, found.fault, told >> id_bits),
-                              static_cast<uint32_t>(told & ((uint64_t{1} << id_bits) - 1)),
+                              faulty_cell(n, found.fault, part(told, id_bits, cell_bits)),
+                              static_cast<uint32_t>(part(told, 0, id_bits)),
                               found.number,
                               {}};
-      const auto key = [](const StopReason& r) { return std::tie(r.fault, r.particle, r.number); };
-      if (least.fault == Fault::none || key(reason) < key(least)) least = reason;
+      const uint64_t stage = part(told, id_bits + cell_bits, kStageBits);
+      const auto key = [](const StopReason& r, uint64_t at) {
+        return std::tuple(at, r.fault, r.particle, r.number);
+      };
+      if (least.fault == Fault::none || key(reason, stage) < key(least, least_stage))
+        least = reason, least_stage = stage;
     }
     const Cell& c = plan_.lattice.cell(least.cell);
     least.text = RunError(least.fault, step, least.cell, least.particle, least.number,
@@ -160,25 +160,26 @@ class Session {
 
   Host& host_;
   const Plan& plan_;
+  const ShownReader reader_;
   BoardInfo info_;
   uint64_t base_ = 0;                        // step of the state that was loaded
   uint64_t cycles_before_ = 0, cycles_ = 0;  // of runs without a fault
 };
 
-class BoardEngine : public StateEngine {
+// What engines of a board have in common.
+class BoardRun {
  public:
-  BoardEngine(Host& host, const Scene& scene, const Plan& plan, CheckpointReader* from)
-      : StateEngine(setting_of(scene, plan)),
-        host_(host),
+  BoardRun(Host& host, const Plan& plan, State from, uint64_t cycles_before)
+      : host_(host),
         session_(host, plan),
-        known_(begin_of(scene, plan, from)),
+        known_(std::move(from)),
         at_(known_.step),
-        cycles_before_(from ? from->head().engine.counters[0] : 0) {
+        cycles_before_(cycles_before) {
     session_.load(known_);
   }
 
-  uint64_t step_count() const override { return at_; }
-  void advance(uint64_t steps, std::vector<uint64_t>*) override {
+  uint64_t step_count() const { return at_; }
+  void advance(uint64_t steps) {
     if (at_ + steps > std::numeric_limits<uint32_t>::max())
       throw InputError(fmt::format("{} steps: a board counts at most {}", at_ + steps,
                                    std::numeric_limits<uint32_t>::max()));
@@ -189,26 +190,21 @@ class BoardEngine : public StateEngine {
     }
     at_ += steps;
   }
-  Counters counters() override {
+  const State& state() {
+    if (!read_ || known_.step != at_) known_ = session_.read(at_);
+    read_ = true;
+    return known_;
+  }
+  uint64_t cycles() const { return cycles_before_ + session_.cycles(); }
+  Counters counters() const {
     const LinkCount& count = host_.count();
-    return {{"cycles", static_cast<double>(cycles_before_ + session_.cycles())},
+    return {{"cycles", static_cast<double>(cycles())},
             {"requests", static_cast<double>(count.requests)},
             {"retries", static_cast<double>(count.retries)},
             {"bytes on the line", static_cast<double>(count.bytes)}};
   }
-  void for_each_slot(const std::function<void(const Particle&)>& see) override {
-    for (const Particle& particle : make_state().particles) see(particle);
-  }
-  EngineMemory memory() override { return {{cycles_before_ + session_.cycles()}, {}}; }
-  Notes notes() override {
+  Notes notes() const {
     return {{"port", host_.port()}, {"board clock", fmt::format("{} MHz", session_.info().clock_hz / 1e6)}};
-  }
-
- protected:
-  State make_state() override {
-    if (!read_ || known_.step != at_) known_ = session_.read(at_);
-    read_ = true;
-    return known_;
   }
 
  private:
@@ -220,14 +216,73 @@ class BoardEngine : public StateEngine {
   const uint64_t cycles_before_;  // of the runs before this one, up to the checkpoint
 };
 
+// Of the pair law.
+class BoardEngine : public StateEngine {
+ public:
+  BoardEngine(Host& host, const Scene& scene, const Plan& plan, CheckpointReader* from)
+      : StateEngine(setting_of(scene, plan)),
+        run_(host, plan, begin_of(scene, plan, from), from ? from->head().engine.counters[0] : 0) {}
+
+  uint64_t step_count() const override { return run_.step_count(); }
+  void advance(uint64_t steps, std::vector<uint64_t>*) override { run_.advance(steps); }
+  Counters counters() override { return run_.counters(); }
+  void for_each_slot(const std::function<void(const Particle&)>& see) override {
+    for (const Particle& particle : run_.state().particles) see(particle);
+  }
+  EngineMemory memory() override { return {{run_.cycles()}, {}}; }
+  Notes notes() override { return run_.notes(); }
+
+ protected:
+  State make_state() override { return run_.state(); }
+
+ private:
+  BoardRun run_;
+};
+
+// Of a rule of text.
+class BoardIntegers : public IntegerEngine {
+ public:
+  BoardIntegers(Host& host, const Plan& plan, const State& from, uint64_t cycles_before)
+      : plan_(plan), run_(host, plan, from, cycles_before) {}
+
+  void advance(uint64_t steps, std::vector<uint64_t>*) override { run_.advance(steps); }
+  uint64_t step_count() const override { return run_.step_count(); }
+  State state() const override { return run_.state(); }
+  uint64_t hash() const override { return hash_of(plan_.lattice, run_.state()); }
+  std::vector<Int3> next_velocities() override {
+    return GoldenIntegers(plan_.program->program, plan_.lattice, plan_.arch.capacity, run_.state(),
+                          plan_.program->rows)
+        .next_velocities();
+  }
+  void for_each_slot(const std::function<void(const Particle&)>& see) const override {
+    for (const Particle& particle : run_.state().particles) see(particle);
+  }
+  Counters counters() const override { return run_.counters(); }
+  std::vector<uint64_t> clocks() const override { return {run_.cycles()}; }
+  Notes notes() const override { return run_.notes(); }
+
+ private:
+  const Plan& plan_;
+  mutable BoardRun run_;  // a look at the state reads it over the line
+};
+
 }  // namespace
 
 EngineKind board_kind(Host& host, const Scene& scene, const Plan& plan) {
   EngineKind kind = fixed_kind("fpga", scene, plan);
   kind.batches = kind.in_pieces = true;
   kind.saves = true;
-  kind.make = [&host, &scene, &plan](CheckpointReader* from, bool) {
-    return std::make_unique<BoardEngine>(host, scene, plan, from);
+  kind.make = [&host, &scene, &plan](CheckpointReader* from, bool) -> std::unique_ptr<Engine> {
+    if (!plan.program) return std::make_unique<BoardEngine>(host, scene, plan, from);
+    uint64_t cycles = 0;
+    if (from != nullptr) {
+      const std::vector<uint64_t>& own = from->head().engine.own;
+      const size_t words = program_words(*plan.program, plan.particles);
+      if (own.size() > words) cycles = own[words];
+    }
+    return integer_run(scene, plan, from, [&host, &plan, cycles](const State& initial) {
+      return std::make_unique<BoardIntegers>(host, plan, initial, cycles);
+    });
   };
   return kind;
 }

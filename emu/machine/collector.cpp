@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <tuple>
@@ -17,20 +16,6 @@ namespace {
 std::string place_of(const Lattice& lattice, uint32_t cell) {
   const Cell& c = lattice.cell(cell);
   return fmt::format(" at ({}, {}, {})", c[0], c[1], c[2]);
-}
-
-void sort_by_id(State& state) {
-  const size_t numbers = state.fields.size() / std::max<size_t>(1, state.particles.size());
-  std::vector<size_t> order(state.particles.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::sort(order, {}, [&](size_t k) { return state.particles[k].id; });
-  State sorted{state.step, {}, {}, std::move(state.bonds), std::move(state.bond_begin)};
-  for (const size_t k : order) {
-    sorted.particles.push_back(state.particles[k]);
-    const auto fields = state.fields.begin() + static_cast<ptrdiff_t>(k * numbers);
-    sorted.fields.insert(sorted.fields.end(), fields, fields + static_cast<ptrdiff_t>(numbers));
-  }
-  state = std::move(sorted);
 }
 
 // The particle's row as packed, with the numbers that `state` has of its bonds.
@@ -119,6 +104,7 @@ void load(const std::vector<Loaded>& particles, size_t k, Control& control) {
 Collector::Collector(const Plan& plan, const RunOptions& options)
     : plan_(plan),
       options_(options),
+      reader_(plan),
       nodes_(plan.nodes()),
       rounds_(static_cast<int>(plan.rounds.size())),
       phases_(static_cast<size_t>(phases_of(rounds_))),
@@ -130,8 +116,6 @@ Collector::Collector(const Plan& plan, const RunOptions& options)
   trace_.plan_hash = plan.hash;
   trace_.nodes = nodes_;
   trace_.rounds = rounds_;
-  if (plan.program && plan.program->rows && plan.program->program.bond_numbers() > 0)
-    bond_begin_ = begins_of(*plan.program->rows, plan.program->program.bond_numbers());
 }
 
 Collector::Snapshot& Collector::snapshot(uint64_t step) {
@@ -146,53 +130,16 @@ uint32_t Collector::cell_of(uint32_t node, uint32_t local) const {
   return cell != kNoCell ? cell : plan_.first_cell_of(node);
 }
 
-// A row goes where its particle goes, and but for its numbers nothing changes it.
-void Collector::check_bonds(uint32_t node, const Slot& slot) const {
-  const graph::BondRows& rows = *plan_.program->rows;
-  const uint32_t id = slot.body.id;
-  const uint64_t first = rows.first[id], bonds = rows.first[id + 1] - first;
-  for (size_t k = 0; k < slot.bonds.size(); ++k) {
-    const Bond& bond = slot.bonds[k];
-    const bool same = k < bonds ? bond.other == rows.other[first + k] && bond.kind == rows.kind[first + k]
-                                : bond.other == id;
-    if (!same)
-      throw std::runtime_error(
-          fmt::format("step {}: particle {} holds a bond to {} in place {}", step_[node], id, bond.other, k));
-  }
-}
-
 void Collector::observe(uint32_t node, const NodeOutputs& out) {
-  const Slot slot = unpack_particle(plan_, out.observe_data);
-  if (slot.body.id >= plan_.particles)
-    throw std::runtime_error(
-        fmt::format("step {}: holds particle {}, of {}", step_[node], slot.body.id, plan_.particles));
   const uint64_t step = step_[node];
-  Particle p;
-  p.id = slot.body.id;
-  p.type = slot.body.type;
-  p.cell = cell_of(node, out.observe_cell);
-  p.x = position_of(plan_.rule.widths, slot);
-  p.v = slot.body.v;
-  p.u = slot.u;
+  const Shown shown = reader_.read(out.observe_data, cell_of(node, out.observe_cell), step);
   Snapshot& s = snapshot(step);
-  const std::vector<int64_t>& fields = slot.body.fields;
-  if (!slot.bonds.empty()) check_bonds(node, slot);
-  std::span<const int64_t> bonds;
-  if (!bond_begin_.empty())
-    bonds = std::span(slot.bond_numbers).first(bond_begin_[p.id + 1] - bond_begin_[p.id]);
-  s.hash += hash_of(plan_.lattice, p, fields, bonds);
-  if (s.kept || options_.keep_last) {
-    s.state.particles.push_back(p);
-    s.state.fields.insert(s.state.fields.end(), fields.begin(), fields.end());
-    if (!bond_begin_.empty()) {
-      if (s.state.bonds.empty()) s.state.bonds.resize(bond_begin_.back()), s.state.bond_begin = bond_begin_;
-      std::ranges::copy(bonds, s.state.bonds.begin() + static_cast<ptrdiff_t>(bond_begin_[p.id]));
-    }
-  }
+  s.hash += reader_.hash(shown);
+  if (s.kept || options_.keep_last) reader_.add(shown, s.state);
   if (options_.keep_order) {
     if (order_.size() <= step)
       order_.resize(step + 1, std::vector<std::vector<uint32_t>>(plan_.lattice.size()));
-    order_[step][p.cell].push_back(p.id);
+    order_[step][shown.particle.cell].push_back(shown.particle.id);
   }
 }
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <vector>
 
+#include "emu/machine/shown.h"
 #include "emu/machine/wire_faults.h"
-#include "emu/machine/words.h"
 #include "hw/plan/plan.h"
 #include "model/trace/trace.h"
 
@@ -84,7 +84,6 @@ class Collector {
   Snapshot& snapshot(uint64_t step);
   void observe(uint32_t node, const NodeOutputs& out);
   uint32_t cell_of(uint32_t node, uint32_t local) const;
-  void check_bonds(uint32_t node, const Slot& slot) const;
   void complete(uint64_t step);
   void keep(State state);
   void close(uint64_t cycle);
@@ -92,12 +91,12 @@ class Collector {
 
   const Plan& plan_;
   RunOptions options_;  // frames ascending
+  const ShownReader reader_;
   const uint32_t nodes_;
   const int rounds_;
   const size_t phases_;               // of a step
   const int shown_phase_;             // with whose end a node has shown its particles
   const int last_phase_;              // of a step
-  std::vector<uint64_t> bond_begin_;  // State::bond_begin; empty where rounds write no bonds
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in
   std::vector<bool> stopped_;              // per node: back in IDLE

@@ -48,6 +48,7 @@ const std::vector<EngineRow>& engines() {
        .needs = "install verilator and libsystemc-dev and build again",
        .cost = {0, 0, true, 600, 0, 15e3}},
       {.name = "fpga",
+       .text = true,
        .port = true,
        .hash_every = 0,
        .program = "cuboct-fpga",

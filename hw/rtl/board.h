@@ -33,9 +33,12 @@ const std::vector<std::string>& buses();
 struct BoardChoice {
   std::string name;
   int baud = 1000000;
-  bool velocities = true;  // a host may set those of moved_types()
+  bool velocities = true;  // a host may set those of moved_types(); of a rule of text never
   std::string bus = {};
 };
+
+// Above a fault's id and cell, of a rule of text: the port fault_stage_o of its nodes.
+inline constexpr int kStageBits = 4;
 
 // Length of a bit on the serial line in 1/16 clocks of the board; at least 4 clocks, or InputError.
 int bit_clocks16(const Board& board, int baud);

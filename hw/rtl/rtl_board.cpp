@@ -24,6 +24,8 @@ std::string print_line(const RtlDesign& design, const BoardChoice& choice) {
       bit_clocks16(board, choice.baud));
 }
 
+int stage_bits(const Plan& plan) { return plan.program ? kStageBits : 0; }
+
 }  // namespace
 
 std::string print_machine_package(const Plan& plan, const RtlDesign& design) {
@@ -34,13 +36,16 @@ std::string print_machine_package(const Plan& plan, const RtlDesign& design) {
       "package cuboct_machine_pkg;\n"
       "  localparam int          Nodes       = {};\n"
       "  localparam int          CellBits    = {};  // of a cell's number in its node\n"
+      "  localparam int          StageBits   = {};  // of a fault's stage, of a rule of text\n"
+      "  localparam int          PhaseBits   = {};  // phases of a step\n"
       "  localparam int          Slots       = {};  // of a node\n"
       "  localparam int          MovedTypes  = {};\n"
       "  localparam logic [{}:0] Velocities = {};\n"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
       "endpackage\n",
-      design.maker, plan.nodes(), plan.bricks.cell_bits(),
+      design.maker, plan.nodes(), plan.bricks.cell_bits(), stage_bits(plan),
+      phases_of(design.rounds),
       cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), design.moved.size(),
       velocities_bits(design) - 1, print_velocities(design), plan.hash, machine_hash(plan));
 }
@@ -58,15 +63,17 @@ void legalise_machine(const Plan& plan) {
   at_most("the number of slots of a node",
           cells_of(plan.bricks.shape()) * static_cast<uint64_t>(plan.arch.capacity), 32767,
           {"node.capacity", "node.brick"});
-  at_most("the width of a particle's id and of its cell",
-          static_cast<uint64_t>(plan.words.id_bits) + static_cast<uint64_t>(cell_bits), 32, body);
+  at_most(plan.program ? "the width of a particle's id and of a fault's stage"
+                       : "the width of a particle's id and of its cell",
+          static_cast<uint64_t>(plan.words.id_bits + cell_bits + stage_bits(plan)), 32, body);
   at_most("the width of a particle and of its cell",
           static_cast<uint64_t>(plan.words.particle_bits) + static_cast<uint64_t>(cell_bits), 512,
-          {"widths.velocity_bits", "widths.displacement_bits"});
+          {"widths.velocity_bits", "widths.displacement_bits", "rule.file", "rule"});
   at_most("the number of particles", plan.particles, kLargest, body);
   at_most("the width of a velocity", static_cast<uint64_t>(plan.rule.widths.velocity_bits), 64,
           {"widths.velocity_bits"});
-  at_most("the number of held and moved types", moved_types(plan.rule).size(), 255, {"constraint"});
+  if (!plan.program)
+    at_most("the number of held and moved types", moved_types(plan.rule).size(), 255, {"constraint"});
 }
 
 void legalise_board(const Plan& plan, const BoardChoice& choice) {

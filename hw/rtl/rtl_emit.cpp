@@ -171,9 +171,10 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
                           "leave out [boards]; 'cuboct run --engine rtl' clocks the whole machine with it");
   RtlDesign design = design_of(plan);
   legalise(design, true);
-  if (design.text && (!board.name.empty() || !board.bus.empty()))
+  if (design.text && (!board.name.empty() || !board.bus.empty()) && reads_step(plan.program->program))
     throw InputError(
-        fmt::format("{}: a host's link serves the pair law alone, and the scene has the rule '{}'",
+        fmt::format("{}: the rule '{}' reads the step, which nodes count from their reset, and a host loads "
+                    "the state of any step",
                     board.bus.empty() ? "--board " + board.name : "--bus " + board.bus,
                     plan.program->program.name),
         "emit the lattice without it: its ports take and show the rule's particles")
@@ -181,7 +182,7 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
   if (!board.name.empty()) legalise_board(plan, board);
   if (!board.bus.empty()) legalise_bus(plan, board);
   if (!board.name.empty() || !board.bus.empty())
-    if (board.velocities) design.moved = moved_types(plan.rule);
+    if (board.velocities && !design.text) design.moved = moved_types(plan.rule);
   return design;
 }
 
@@ -190,7 +191,8 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
 void check_emission(const Plan& plan, const Emission& emission) { legal_design(plan, emission); }
 
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission) {
-  const BoardChoice& board = emission.board;
+  BoardChoice board = emission.board;
+  if (plan.program) board.velocities = false;
   const RtlDesign design = legal_design(plan, emission);
   Files files;
   add_node(files, design, plan);

@@ -117,6 +117,16 @@ std::vector<int> finish_outputs(const FixedProgram& program, const Round& round)
   return nodes;
 }
 
+bool reads_step(const FixedProgram& program) {
+  const auto reads = [](const Graph& graph) {
+    return std::ranges::any_of(graph.nodes, [](const Node& node) {
+      return node.op == Op::input && node.source == Source::step;
+    });
+  };
+  return std::ranges::any_of(program.rounds,
+                             [&](const Round& round) { return reads(round.pair) || reads(round.finish); });
+}
+
 int FixedProgram::numbers() const { return place(static_cast<int>(fields.size())); }
 int FixedProgram::place(int field) const { return place_in(fields, field); }
 int FixedProgram::bond_numbers() const { return bond_place(static_cast<int>(bonds.size())); }

@@ -106,6 +106,9 @@ std::vector<int> terms_of(const Round& round);
 std::vector<int> pair_outputs(const Round& round);
 std::vector<int> finish_outputs(const FixedProgram& program, const Round& round);
 
+// Whether any term depends on the number of the step, as noise does.
+bool reads_step(const FixedProgram& program);
+
 // Inputs with the range that the program gives them.
 int read_apart(Builder& b, const FixedProgram& program, int axis);
 int read_velocity(Builder& b, const FixedProgram& program, Source source, int axis);

@@ -17,10 +17,12 @@ module cuboct_machine #(
   localparam int ParticleBits = cuboct_pkg::ParticleBits;
   localparam int IdBits       = cuboct_pkg::IdBits;
   localparam int VelocityBits = cuboct_pkg::VelocityBits;
-  // On the line a particle's word, and a fault's id, have the cell of a brick above them.
+  // On the line a particle's word, and a fault's id, have the cell of a brick above them; and above that the
+  // fault of a rule of text has its stage.
   localparam int CellBits     = cuboct_machine_pkg::CellBits;
+  localparam int StageBits    = cuboct_machine_pkg::StageBits;
   localparam int WordBits     = ParticleBits + CellBits;
-  localparam int TellBits     = IdBits + CellBits;
+  localparam int TellBits     = IdBits + CellBits + StageBits;
 
   logic                    lattice_rst_n, start, load_valid, select, idle, busy, settled, faulty;
   logic                    observe_valid, fault_valid;
@@ -55,17 +57,18 @@ module cuboct_machine #(
   localparam int CellPortBits = (CellBits > 0) ? CellBits : 1;
   logic [HostBits-1:0]     velocity_i;
   logic [CellPortBits-1:0] load_cell_i, observe_cell_o, fault_cell_o;
+  logic [3:0]              fault_stage_o;
   // probe_* show nothing, as Probe is 0.
-  logic [7:0]              probe_phase_start_o, probe_phase_end_o;
+  logic [cuboct_machine_pkg::PhaseBits-1:0] probe_phase_start_o, probe_phase_end_o;
   logic                    probe_observe_valid_o, probe_fault_valid_o, probe_idle_o;
   logic [ParticleBits-1:0] probe_observe_data_o;
-  logic [3:0]              probe_fault_code_o;
+  logic [3:0]              probe_fault_code_o, probe_fault_stage_o;
   logic [IdBits-1:0]       probe_fault_id_o;
   logic [CellPortBits-1:0] probe_observe_cell_o, probe_fault_cell_o;
   logic [63:0]             probe_fault_number_o;
   logic                    unused_probes;
   assign unused_probes = ^{probe_phase_start_o, probe_phase_end_o, probe_observe_valid_o, probe_fault_valid_o,
-                           probe_idle_o, probe_observe_data_o, probe_fault_code_o, probe_fault_id_o,
+                           probe_idle_o, probe_observe_data_o, probe_fault_code_o, probe_fault_stage_o, probe_fault_id_o,
                            probe_observe_cell_o, probe_fault_cell_o, probe_fault_number_o};
   if (MovedTypes > 0) begin : gen_velocities
     cuboct_velocities #(
@@ -84,7 +87,7 @@ module cuboct_machine #(
   if (CellBits > 0) begin : gen_bricks
     assign load_cell_i = load_word[ParticleBits +: CellPortBits];
     assign observe_word = {observe_cell_o, observe_data};
-    assign fault_tell   = {fault_cell_o, fault_id};
+    assign fault_tell[IdBits +: CellPortBits] = fault_cell_o;
   end else begin : gen_no_bricks
     logic unused_cells;
     assign unused_cells   = ^{load_cell_i, observe_cell_o, fault_cell_o};
@@ -94,7 +97,15 @@ module cuboct_machine #(
     assign probe_observe_cell_o = '0;
     assign probe_fault_cell_o   = '0;
     assign observe_word   = observe_data;
-    assign fault_tell     = fault_id;
+  end
+  assign fault_tell[IdBits-1:0] = fault_id;
+  if (StageBits > 0) begin : gen_stages
+    assign fault_tell[TellBits-1 -: 4] = fault_stage_o;
+  end else begin : gen_no_stages
+    logic unused_stages;
+    assign fault_stage_o       = '0;
+    assign probe_fault_stage_o = '0;
+    assign unused_stages       = ^fault_stage_o;
   end
   cuboct_lattice u_lattice (
     .*, .clk_i, .rst_ni(lattice_rst_n), .start_i(start), .steps_i(steps), .load_valid_i(load_valid),
