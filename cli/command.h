@@ -24,6 +24,7 @@ void add_energy(Command& app, int& exit_code);
 void add_boards(Command& app, int& exit_code);
 void add_bench(Command& app, int& exit_code);
 void add_curves(Command& app, int& exit_code);
+void add_measure(Command& app, int& exit_code);
 void add_picture(Command& app, int& exit_code);
 void add_report(Command& app, int& exit_code);
 void add_multiscale(Command& app, int& exit_code);

@@ -23,6 +23,7 @@ constexpr std::array kEntries{
     Entry{"make a scene", "check", "cuboct check scenes/coupon.toml"},
     Entry{"run it", "run", "cuboct run scenes/coupon.toml --steps 400 --out out/coupon"},
     Entry{"run it", "curves", "cuboct curves out/coupon --out coupon.csv"},
+    Entry{"run it", "measure", "cuboct measure out/melt rdf --out rdf.csv"},
     Entry{"run it", "picture", "cuboct picture out/coupon --field speed"},
     Entry{"run it", "report", "cuboct report out/coupon"},
     Entry{"compare", "crosscheck", "cuboct crosscheck scenes/lj_block.toml --engines golden,lattice"},

@@ -5,8 +5,9 @@
 
 int main(int argc, char** argv) {
   using namespace cuboct;
-  constexpr OwnCommand kOwn[] = {
-      {"new", add_new},       {"check", add_check},     {"run", add_run},      {"crosscheck", add_crosscheck},
-      {"curves", add_curves}, {"picture", add_picture}, {"report", add_report}};
+  constexpr OwnCommand kOwn[] = {{"new", add_new},         {"check", add_check},
+                                 {"run", add_run},         {"crosscheck", add_crosscheck},
+                                 {"curves", add_curves},   {"measure", add_measure},
+                                 {"picture", add_picture}, {"report", add_report}};
   return front(argc, argv, kOwn);
 }
