@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cli/run/measure_run.h"
 #include "cli/run/summary.h"
 #include "cli/run/templates.h"
 #include "hw/engine/scene_engine.h"
@@ -24,6 +25,7 @@
 #include "model/rules/rounds_rule.h"
 #include "model/trace/trace_head.h"
 #include "python/explore.h"
+#include "python/measures.h"
 #include "python/runs.h"
 #include "python/simulation.h"
 
@@ -130,6 +132,7 @@ py::dict dict_of(const WholeRun& run) {
   out["stopped"] = trace.stop ? py::cast(trace.stop->text) : py::none();
   out["reached"] = trace.reached ? py::cast(reached_text(trace)) : py::none();
   out["summary"] = run.summary;
+  out["_matter"] = Matter{run.scene, run.wrapped, velocities_late(trace, run.dt)};
   return out;
 }
 
@@ -385,6 +388,7 @@ PYBIND11_MODULE(_cuboct, module) {
     return tuple_of(table);
   });
   module.def("check", check);
+  add_measures(module);
   module.def("read_text", [](const std::string& path) {
     std::string text = read_config_text(path);
     check_utf8(text, path);

@@ -71,7 +71,7 @@ Fields shown_by(const Rule& rule, const RealFrame& frame) {
 
 WholeRun run(const Sources& sources, const RunAsked& given) {
   if (!given.engine.empty()) given.options.check({engine_row(given.engine).name}, {});
-  const Loaded loaded = load_plan(sources, false, given.engine, given.options.is_real(given.engine));
+  Loaded loaded = load_plan(sources, false, given.engine, given.options.is_real(given.engine));
   const Scene& scene = loaded.scene;
   const Plan& plan = loaded.setup.plan;
   const RunAsked asked = for_scene(given, scene);
@@ -92,6 +92,7 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   request.keep = [&](const RunState& frame) {
     if (!asked.leave.empty()) last = frame;
     if (const State* state = std::get_if<State>(&frame)) {
+      result.wrapped = true;
       result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin), {}});
     } else {
       const RealFrame& real = std::get<RealFrame>(frame);
@@ -117,6 +118,7 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
     leave_state(asked.leave, head_of(loaded, asked.options.is_real(asked.engine), false), *last,
                 result.recorded.trace);
   result.summary = summary.json();
+  result.scene = std::make_shared<const Scene>(std::move(loaded.scene));
   return result;
 }
 

@@ -2,6 +2,7 @@
 // Whole runs, in any engine: here, or in a program of its own.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,10 +31,12 @@ struct Kept {
 };
 
 struct WholeRun {
+  std::shared_ptr<const Scene> scene;
   Recorded recorded;  // without its frames
   std::vector<Kept> kept;
-  double dt = 0;        // s
-  std::string summary;  // as `cuboct run --json` prints it
+  double dt = 0;         // s
+  std::string summary;   // as `cuboct run --json` prints it
+  bool wrapped = false;  // the states' positions stand in the periodic box
 };
 
 // Throws Interrupted. A run that a fault stopped tells so in its trace.

@@ -87,7 +87,7 @@ void add_measure(Command& app, int&) {
               "default between first and second shell; cna: by default none, it adapts")
       .type_name("LENGTH");
   command.option("--bins", options->bins, "of rdf; default: 200")
-      .range(uint64_t{1}, uint64_t{1000000})
+      .range(uint64_t{1}, kMostBins)
       .type_name("N")
       .given(options->bins_given);
   command

@@ -46,6 +46,11 @@ Measured measure_snapshots(
   return out;
 }
 
+double velocities_late(const Trace& trace, double dt) {
+  const auto of = std::ranges::find(trace.notes, "integrator", &std::pair<std::string, std::string>::first);
+  return of != trace.notes.end() && of->second == "velocity Verlet" ? 0 : dt / 2;
+}
+
 Measured measure_trace(const Loaded& loaded, const Trace& trace, const MeasureAsked& asked,
                        const SeeParticles& see) {
   const Scene& scene = loaded.scene;
@@ -53,11 +58,9 @@ Measured measure_trace(const Loaded& loaded, const Trace& trace, const MeasureAs
   std::vector<uint64_t> steps;
   for (const State& state : trace.frames) steps.push_back(state.step);
   for (const RealFrame& frame : trace.bodies) steps.push_back(frame.step);
-  const auto verlet =
-      std::ranges::find(trace.notes, "integrator", &std::pair<std::string, std::string>::first);
-  const bool half_step = verlet == trace.notes.end() || verlet->second != "velocity Verlet";
+  const double late = velocities_late(trace, scene.rule.dt);
   const auto snapshot = [&](size_t k) {
-    Snapshot now{steps[k], {}, !real, half_step ? scene.rule.dt / 2 : 0};
+    Snapshot now{steps[k], {}, !real, late};
     if (real) {
       const RealFrame& frame = trace.bodies[k];
       now.body.x = frame.x, now.body.v = frame.v, now.body.u = frame.u, now.body.type = scene.body.type;

@@ -24,6 +24,9 @@ using KeptFrame = std::variant<const State*, const RealFrame*>;
 using SeeParticles =
     std::function<void(const KeptFrame& frame, const Snapshot& now, const MeasuredParticles& particles)>;
 
+// s, from the time of a trace's velocities to that of its positions.
+double velocities_late(const Trace& trace, double dt);
+
 // The frames of a run's trace. InputError where it kept none.
 Measured measure_trace(const Loaded& loaded, const Trace& trace, const MeasureAsked& asked,
                        const SeeParticles& see = {});

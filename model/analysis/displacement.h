@@ -15,9 +15,9 @@ class DisplacementMeter {
   // images. Else they are not wrapped, and no frame between the first and this one matters.
   DisplacementMeter(const Periodic& periodic, bool wrapped) : periodic_(periodic), wrapped_(wrapped) {}
 
-  // Frames ascend in their steps; `v` (m/s) and `dt` (s) say how fast the whole moves. InputError where a
-  // particle, or by its velocity the whole, moves more than a quarter of a period between two frames: through
-  // how many periods is then not known.
+  // Frames ascend in their steps; `v` (m/s) and `dt` (s) say how fast the whole moves; no `v`: nobody does.
+  // InputError where a particle, or by its velocity the whole, moves more than a quarter of a period between
+  // two frames: through how many periods is then not known.
   void add(uint64_t step, const std::vector<Vec3>& x, const std::vector<Vec3>& v, double dt);
 
   // m, since the first frame.

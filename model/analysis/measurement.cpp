@@ -85,20 +85,24 @@ struct Volume {
 };
 
 Volume volume_of(const Scene& scene, const MeasureChoice& choice) {
-  if (choice.volume) return {*choice.volume, "--volume", all_periodic(scene)};
+  if (choice.volume) return {*choice.volume, choice.option + "volume", all_periodic(scene)};
   if (all_periodic(scene)) return {scene.periodic.extent.prod(), "the periodic box"};
   const bool atoms = scene.rule.rounds && !scene.rule.rounds->element().empty();
   if (scene.pitch == 0 || atoms)
     throw InputError("the body's volume is not known: its box does not repeat along x, y and z",
-                     "--volume '1 mm^3' says it");
+                     choice.option + "volume says it: '1 mm^3'");
   return {static_cast<double>(scene.body.size()) * packed_volume(scene.pitch), "the particles as packed",
           false};
 }
 
-// Columns "step" and "time", then others, a row for each frame.
+// Columns "step" and, but of static loading, "time", then others, a row for each frame.
 class Rows : public Measure {
  public:
-  explicit Rows(const Scene& scene) : scene_(scene) { columns_ = {{"step", "1", true}, {"time", "s"}}; }
+  explicit Rows(const Scene& scene) : scene_(scene) {
+    columns_ = {{"step", "1", true}};
+    if (!scene.loading) columns_.push_back({"time", "s"});
+    own_ = columns_.size();
+  }
   const MeasuredParticles* particles() const override { return &particles_; }
   Measured result() override { return {notes_, columns_}; }
 
@@ -108,14 +112,16 @@ class Rows : public Measure {
   }
   void note(const std::string& name, const std::string& text) { notes_.emplace_back(name, text); }
   void row(const Snapshot& now, const std::vector<double>& values) {
-    columns_[0].values.push_back(static_cast<double>(now.step));
-    columns_[1].values.push_back(static_cast<double>(now.step) * scene_.rule.dt);
-    for (size_t k = 0; k < values.size(); ++k) columns_[k + 2].values.push_back(values[k]);
+    const auto step = static_cast<double>(now.step);
+    columns_[0].values.push_back(step);
+    if (own_ == 2) columns_[1].values.push_back(step * scene_.rule.dt);
+    for (size_t k = 0; k < values.size(); ++k) columns_[own_ + k].values.push_back(values[k]);
   }
 
   const Scene& scene_;
   MeasuredParticles particles_;
   std::vector<MeasuredColumn> columns_;
+  size_t own_ = 0;  // columns before the measure's own
   std::vector<std::pair<std::string, std::string>> notes_;
 };
 
@@ -153,8 +159,9 @@ class RdfMeasure : public Measure {
   static RdfMeter meter_of(const Scene& scene, const MeasureChoice& choice) {
     RdfSets sets;
     if (choice.types.size() == 1 || choice.types.size() > 2)
-      throw InputError(fmt::format("--types of rdf names two materials, not {}", choice.types.size()),
-                       "--types A,B; A,A of one with itself");
+      throw InputError(
+          fmt::format("{}types of rdf names two materials, not {}", choice.option, choice.types.size()),
+          "A,B: those of B about those of A; A,A of one with itself");
     if (!choice.types.empty())
       sets = {particles_of(scene, choice.types[0]), particles_of(scene, choice.types[1])};
     const double cutoff = choice.cutoff.value_or(within_box(kRdfReach * spacing(scene), scene.periodic));
@@ -175,7 +182,7 @@ class MsdMeasure : public Rows {
     if (choice.com)
       for (const uint8_t type : scene.body.type) masses_.push_back(scene.rule.mass_of(type));
     note("drift", choice.com ? "the centre of mass's motion is taken off"
-                             : "the centre of mass's motion counts; --com takes it off");
+                             : "the centre of mass's motion counts; " + choice.option + "com takes it off");
     particles_ = {"displacement", "m", kVectorNames};
   }
 
@@ -184,7 +191,8 @@ class MsdMeasure : public Rows {
       meter_.emplace(scene_.periodic, now.wrapped);
       notes_.emplace(notes_.begin(), "from", fmt::format("step {}", now.step));
     }
-    meter_->add(now.step, now.body.x, now.body.v, scene_.rule.dt);
+    // Of a rule with noise or bonds the mean velocity tells nothing of the way: it does not last.
+    meter_->add(now.step, now.body.x, scene_.rule.rounds ? std::vector<Vec3>() : now.body.v, scene_.rule.dt);
     const Vec3 squares = mean_squared(meter_->moved(), counted_, masses_);
     row(now, {squares.sum(), squares[0], squares[1], squares[2]});
     particles_.values.clear();
@@ -219,7 +227,7 @@ class CoordinationMeasure : public Rows {
       const double least = first_minimum(meter.result(1));
       if (least == 0)
         throw InputError("no cutoff is known: g(r) of the first frame has no minimum behind a peak",
-                         "--cutoff says it");
+                         choice_.option + "cutoff says it");
       cut_at(least, fmt::format("first minimum of g(r) of step {}", now.step));
     }
     std::vector<double>& of = particles_.values;
@@ -237,11 +245,11 @@ class CoordinationMeasure : public Rows {
       values[0] += of[i], ++values[count + 1], ++number;
     }
     if (number > 0) values[0] /= number;
-    for (size_t count = columns_.size() - 3; count + 1 < values.size(); ++count) {
+    for (size_t count = columns_.size() - own_ - 1; count + 1 < values.size(); ++count) {
       column(std::to_string(count), "1", true);
       columns_.back().values.assign(columns_[0].values.size(), 0);
     }
-    values.resize(columns_.size() - 2);
+    values.resize(columns_.size() - own_);
     row(now, values);
   }
 
@@ -306,7 +314,8 @@ class StressMeasure : public Rows {
     column("pressure", "Pa");
     particles_ = {"stress_volume", "J", kTensorNames};
     note("volume", fmt::format("{}, of {}", told(scene, volume_.value, "m^3"), volume_.of));
-    note("kinetic part", kinetic_ ? "counts; --virial leaves it out" : "left out");
+    note("kinetic part",
+         kinetic_ ? "counts; " + choice.option + "virial leaves it out" : std::string("left out"));
     note("sign", "stress is positive in tension; pressure is minus a third of its trace");
   }
 
@@ -332,7 +341,7 @@ class StressMeasure : public Rows {
   ParticleStress stress_;
 };
 
-void refuse_option(const std::string& measure, const char* option, bool given,
+void refuse_option(const std::string& measure, const std::string& option, bool given,
                    std::initializer_list<const char*> measures) {
   const std::vector<std::string> those(measures.begin(), measures.end());
   if (given && std::ranges::find(those, measure) == those.end())
@@ -356,11 +365,11 @@ std::unique_ptr<Measure> make_measure(const std::string& name, const Scene& scen
     const std::string near = did_you_mean(name, names);
     throw InputError(fmt::format("no measure '{}'", name), near.empty() ? list_of(names) : near);
   }
-  refuse_option(name, "--bins", choice.bins.has_value(), {"rdf"});
-  refuse_option(name, "--cutoff", choice.cutoff.has_value(), {"rdf", "coordination", "cna"});
-  refuse_option(name, "--volume", choice.volume.has_value(), {"rdf", "stress"});
-  refuse_option(name, "--com", choice.com, {"msd"});
-  refuse_option(name, "--virial", choice.virial, {"stress"});
+  refuse_option(name, choice.option + "bins", choice.bins.has_value(), {"rdf"});
+  refuse_option(name, choice.option + "cutoff", choice.cutoff.has_value(), {"rdf", "coordination", "cna"});
+  refuse_option(name, choice.option + "volume", choice.volume.has_value(), {"rdf", "stress"});
+  refuse_option(name, choice.option + "com", choice.com, {"msd"});
+  refuse_option(name, choice.option + "virial", choice.virial, {"stress"});
   if (name == "rdf") return std::make_unique<RdfMeasure>(scene, choice);
   if (name == "msd") return std::make_unique<MsdMeasure>(scene, choice);
   if (name == "coordination") return std::make_unique<CoordinationMeasure>(scene, choice);

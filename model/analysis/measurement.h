@@ -22,6 +22,8 @@ struct Snapshot {
   double late = 0;       // s, from the time of the velocities to that of the positions
 };
 
+inline constexpr uint64_t kMostBins = 1000000;
+
 struct MeasureChoice {
   std::optional<double> cutoff{};    // m
   std::optional<uint64_t> bins{};    // of rdf
@@ -30,6 +32,7 @@ struct MeasureChoice {
   bool com = false;                  // of msd: without the motion of the centre of mass
   bool virial = false;               // of stress: without the kinetic part
   int threads = 0;                   // 0: one per core
+  std::string option = "--";         // before the names of options in errors
 };
 
 struct MeasuredColumn {
@@ -66,8 +69,8 @@ const std::vector<std::string>& measure_names();
 // Of which frames, unless somebody says: of rdf the second half, else all.
 const char* usual_frames(const std::string& name);
 
-// Keeps a reference to the scene. InputError where the measure is none, the scene has none of the kind, or an
-// option is not the measure's; options are named as `option` has it: "--cutoff".
+// Keeps a reference to the scene. InputError where there is no such measure, the scene has none of the kind,
+// or an option is not the measure's.
 std::unique_ptr<Measure> make_measure(const std::string& name, const Scene& scene,
                                       const MeasureChoice& choice);
 

@@ -8,22 +8,23 @@
     simulation.step(1000)
     simulation.curves["tension.stress"]  # Pa
 
-`Simulation` is stepped, `run` runs any engine to the end, `crosscheck` compares engines bit by bit, `explore` runs a study. What is given wrong
-raises `InputError`, a step that cannot be done `RunError`. The tutorial is docs/user/python.md.
+`Simulation` is stepped, `run` runs any engine to the end, `crosscheck` compares engines bit by bit, `explore` runs a study, `measure` looks
+at the frames of a run. What is given wrong raises `InputError`, a step that cannot be done `RunError`. The tutorial is docs/user/python.md.
 """
 import os as _os
 import shutil as _shutil
 
 from . import _cuboct
 from ._errors import InputError, RunError
+from ._measure import Measured, measure
 from ._run import Comparison, Frame, Run, crosscheck, explore, run
 from ._scene import Arch, Scene
 from ._simulation import Simulation
 
 __version__: str = _cuboct.version
 __all__ = [
-    "Arch", "Comparison", "Frame", "InputError", "Run", "RunError", "Scene", "Simulation", "crosscheck", "explore", "run",
-    "set_program_directory",
+    "Arch", "Comparison", "Frame", "InputError", "Measured", "Run", "RunError", "Scene", "Simulation", "crosscheck", "explore", "measure",
+    "run", "set_program_directory",
 ]  # fmt: skip
 
 

@@ -41,6 +41,20 @@ class Simulation:
     def set_gravity(self, gravity: tuple[float, float, float]) -> None: ...
     def picture(self, field: str, limit: float, width: int) -> bytes: ...
 
+class Matter:
+    def measure(
+        self,
+        name: str,
+        frames: str,
+        options: dict[str, Any],
+        steps: list[int],
+        positions: list[NDArray[np.float64]],
+        velocities: list[NDArray[np.float64]],
+    ) -> tuple[dict[str, NDArray[Any]], dict[str, str], dict[str, str], NDArray[Any] | None]: ...
+
+def measure(
+    directory: str, name: str, frames: str, options: dict[str, Any]
+) -> tuple[dict[str, NDArray[Any]], dict[str, str], dict[str, str], NDArray[Any] | None]: ...
 def run(
     sources: Sources,
     engine: str,

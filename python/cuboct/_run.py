@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from . import _cuboct
 from ._errors import InputError, RunError
+from ._measure import Frames, Measured, Size, _frames, _options
 from ._scene import ArchLike, SceneLike, sources
 from ._simulation import Start, _count, _given, _left_by
 
@@ -53,6 +54,7 @@ class Run:
     reached: str | None  # where the scene's `until` ended it
     summary: dict[str, Any]  # of `cuboct run --json`
     stages: dict[str, Run] = field(default_factory=dict)  # of a scene of stages the runs of all, by name; this is the last
+    _matter: Any = field(default=None, repr=False, compare=False)
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -85,6 +87,40 @@ class Run:
             table[name] = np.full(len(every), np.nan)
             table[name][np.searchsorted(every, steps[late])] = values
         return table
+
+    def measure(
+        self,
+        what: str,
+        *,
+        frames: Frames = None,
+        cutoff: Size = None,
+        bins: int | None = None,
+        types: str | Sequence[str] | None = None,
+        volume: Size = None,
+        com: bool = False,
+        virial: bool = False,
+        particles: bool = False,
+        threads: int | None = None,
+    ) -> Measured:
+        """What `cuboct measure` tells of `frames` (docs/user/measure.md): "rdf", "msd", "coordination", "cna" or "stress".
+
+        Arguments are as of `cuboct.measure`. A run keeps its last state alone unless `frame_every` says otherwise.
+        """
+        if self._matter is None:
+            raise InputError("a run that was pickled has no scene to measure by")
+        options = _options(
+            cutoff=cutoff, bins=bins, types=types, volume=volume, com=com, virial=virial, particles=particles, threads=threads
+        )  # fmt: skip
+        kept = self.frames
+        return Measured(
+            self._matter.measure(
+                what, _frames(frames), options,
+                [frame.step for frame in kept], [frame.positions for frame in kept], [frame.velocities for frame in kept],
+            )
+        )  # fmt: skip
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_matter": None}
 
     def __repr__(self) -> str:
         return f"<cuboct.Run of {self.steps} steps, {self.engine} engine, hash {self.hash}>"

@@ -74,7 +74,8 @@ dump frames all custom {} frames.txt id xu yu zu vx vy vz fx fy fz c_virial[1] c
 dump_modify frames sort id format float %.17g
 )";
 
-std::string input_file(const LammpsRun& run, bool frames) {
+// As far as the pairs.
+std::string begin_of_input(const LammpsRun& run) {
   const auto boundary = [&](int axis) { return run.periodic.extent[axis] > 0 ? 'p' : 'f'; };
   return fmt::format(R"(units lj
 boundary {} {} {}
@@ -82,7 +83,12 @@ atom_style atomic
 newton on
 read_data body.data
 {}
-neighbor 0.3 bin
+)",
+                     boundary(0), boundary(1), boundary(2), run.pair);
+}
+
+std::string input_file(const LammpsRun& run, bool frames) {
+  return begin_of_input(run) + fmt::format(R"(neighbor 0.3 bin
 neigh_modify every 1 delay 0 check yes
 timestep {:.17g}
 {}thermo_style custom step pe ke press
@@ -91,8 +97,8 @@ thermo {}
 fix nve all nve
 run {}
 )",
-                     boundary(0), boundary(1), boundary(2), run.pair, run.dt,
-                     frames ? fmt::format(kDump, run.steps) : "", frames ? run.steps : run.every, run.steps);
+                                           run.dt, frames ? fmt::format(kDump, run.steps) : "",
+                                           frames ? run.steps : run.every, run.steps);
 }
 
 // Axes that do not repeat get a box well around the atoms.
@@ -205,6 +211,17 @@ std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
     frames[k].kinetic_energy = samples[k].kinetic_energy;
   }
   return frames;
+}
+
+std::vector<std::string> ask_lammps(const LammpsRun& run, const Body& body, const std::string& lines,
+                                    const std::vector<std::string>& files) {
+  const Scratch scratch;
+  scratch.write("body.data", data_file(run, body));
+  scratch.write("in.lmp", begin_of_input(run) + lines);
+  run_in(scratch);
+  std::vector<std::string> texts;
+  for (const std::string& file : files) texts.push_back(scratch.read(file));
+  return texts;
 }
 
 LammpsForces lammps_forces(const LammpsAtoms& atoms) {

@@ -42,6 +42,11 @@ std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body);
 // Samples at step 0, every, 2 every, ...; no frames.
 std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body);
 
+// Runs `lines` of LAMMPS's own once the body is read and its pairs are set, and returns the texts of `files`
+// that they wrote. Boxes of periodic axes, and boundaries of others as of run_lammps.
+std::vector<std::string> ask_lammps(const LammpsRun& run, const Body& body, const std::string& lines,
+                                    const std::vector<std::string>& files);
+
 // Atoms in LAMMPS's metal units (eV, angstrom, bar), of any elements and any box.
 struct LammpsAtoms {
   AtomBox box;  // edges upper triangular, as LAMMPS has them

@@ -351,10 +351,12 @@ TEST(Measures, RefuseWhatTheyHaveNot) {
             "--cutoff is not an option of msd\n  hint: it is one of rdf, coordination or cna");
   EXPECT_EQ(refusal("cna", {.com = true}), "--com is not an option of cna\n  hint: it is one of msd");
   EXPECT_EQ(refusal("rdf", {}),
-            "the body's volume is not known: its box does not repeat along x, y and z\n  hint: --volume '1 "
-            "mm^3' says it");
+            "the body's volume is not known: its box does not repeat along x, y and z\n  hint: --volume says "
+            "it: '1 "
+            "mm^3'");
   EXPECT_EQ(refusal("rdf", {.types = {"free"}, .volume = 1}),
-            "--types of rdf names two materials, not 1\n  hint: --types A,B; A,A of one with itself");
+            "--types of rdf names two materials, not 1\n  hint: A,B: those of B about those of A; A,A of one "
+            "with itself");
   EXPECT_EQ(refusal("msd", {.types = {"fre"}}), "no material 'fre'\n  hint: did you mean 'free'?");
 }
 
