@@ -38,7 +38,7 @@ constexpr CommandRow kCommands[] = {
     {"stability", "measure the largest stable time step, beside what theory says", kStudy, &kStudies},
     {"bench", "measure how fast the engines are", "cuboct-bench", nullptr},
     {"curves", "write what the probes of a run read as comma-separated values", kCore, nullptr},
-    {"measure", "g(r), displacement, coordination, structure or stress of a run's frames", kCore, nullptr},
+    {"measure", "radial distribution, displacement, structure, stress of a run", kCore, nullptr},
     {"picture", "draw the frames of a run's directory, of bodies of any size", kCore, nullptr},
     {"report", "make one HTML file of a run's directory", kCore, nullptr},
 };
