@@ -18,6 +18,7 @@
 #include "model/base/input_file.h"
 #include "model/base/spelling.h"
 #include "model/base/utf8.h"
+#include "model/config/foreign_words.h"
 
 namespace cuboct {
 
@@ -171,6 +172,13 @@ void drop_mark(std::string& text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
 }
 
+// What the key is elsewhere, or the nearest of those that the table could have.
+std::string hint_for(const ConfigNode& table, const std::string& key, const std::vector<std::string>& free) {
+  const std::string foreign =
+      foreign_hint(foreign_keys(), key, table.alias.empty() ? table.path : table.alias);
+  return foreign.empty() ? did_you_mean(key, free) : foreign;
+}
+
 void check_asked(const ConfigFile& file, const ConfigNode& node) {
   if (node.kind == Kind::table && node.opened) {
     for (const ConfigNode& item : node.items) {
@@ -179,7 +187,7 @@ void check_asked(const ConfigFile& file, const ConfigNode& node) {
       for (const std::string& key : node.asked)
         if (field(node, key) == nullptr) free.push_back(key);
       fail_at(file, item.key_line, item.key_column, fmt::format("unknown key '{}'", item.key),
-              did_you_mean(item.key, free));
+              hint_for(node, item.key, free));
     }
   }
   for (const ConfigNode& item : node.items) check_asked(file, item);
@@ -288,8 +296,9 @@ size_t ConfigValue::choice(const std::string& what, const std::vector<std::strin
   const std::string text = string();
   const auto found = std::ranges::find(names, text);
   if (found != names.end()) return static_cast<size_t>(found - names.begin());
-  const std::string near = did_you_mean(text, names);
-  fail(fmt::format("unknown {} '{}'", what, text), near.empty() ? "known: " + list_of(names) : near);
+  std::string hint = node_->key == "kind" ? foreign_hint(foreign_kinds(), text, what) : "";
+  if (hint.empty()) hint = did_you_mean(text, names);
+  fail(fmt::format("unknown {} '{}'", what, text), hint.empty() ? "known: " + list_of(names) : hint);
 }
 
 void ConfigValue::check(double value, const Range& range) const {
