@@ -205,14 +205,42 @@ async function tables_sort_and_filter(page, study) {
   assert.ok((await drawn()).every((engines) => engines.length >= 246));
 }
 
-// Of the chosen error and speed, beside the first columns of the settings.
-async function table_shows_what_was_chosen(page) {
+// Heads of the table of all points that are in sight without scrolling it.
+const heads_in_sight = (page) => page.$$eval("#points th", (all) => {
+  const box = all[0].closest(".scroll").getBoundingClientRect();
+  return all.filter((th) => th.getBoundingClientRect().left >= box.left && th.getBoundingClientRect().right <= box.right).map((th) => th.textContent);
+});
+
+// What was chosen, then all that was swept: six keys, engine and arithmetic.
+async function table_shows_what_was_chosen(page, study) {
+  const swept = [...new Set(study.points.flatMap((p) => [...p.scene, ...p.arch]).map(([key]) => key))];
+  assert.equal(swept.length, 6);
   for (const error of ["change of momentum, of the sum of |m v|", "distance from the true trajectory, pitches (rms)"]) {
     await page.selectOption("#error", {label: error});
-    const heads = await page.$$eval("#points th", (all) => all.filter((th) => th.getBoundingClientRect().right <= 1280).map((th) => th.textContent));
-    for (const name of ["point", "engine", error, "simulated seconds per second", "threads"])
-      assert.ok(heads.includes(name), `no '${name}' within 1280 pixels: ${heads}`);
+    const heads = await heads_in_sight(page);
+    assert.deepEqual(heads.slice(0, 11), ["point", error, "simulated seconds per second", "engine", "arithmetic", ...swept]);
   }
+  // Every column differs between these points.
+  assert.equal(await page.textContent("#same"), "");
+}
+
+// A column with one value in all rows is none: a line above the table has it. What no point has is in neither.
+async function equal_columns_are_folded(page) {
+  const same = await page.textContent("#same"), heads = await page.$$eval("#points th", (all) => all.map((th) => th.textContent));
+  for (const [name, value] of [["run.dt_safety", "0.03"], ["status", "done"], ["particles", "3456"]]) {
+    assert.ok(same.includes(`${name} = ${value}`), `no '${name} = ${value}' in: ${same}`);
+    assert.ok(!heads.includes(name), `'${name}' is a column as well`);
+  }
+  assert.match(same, /^All points have: .*\.$/s);
+  assert.ok(!heads.includes("table.degree") && !same.includes("table.degree"));
+  for (const name of ["point", "arithmetic", "integrator", "widths.position_frac"]) {
+    assert.ok(heads.includes(name), `no column '${name}'`);
+    assert.ok(!same.includes(name + " = "), `'${name}' is folded`);
+  }
+  // Of one point nothing is folded.
+  await page.evaluate(() => { study.points.length = 1; fill_points(); });
+  assert.equal(await page.textContent("#same"), "");
+  assert.ok((await page.$$eval("#points th", (all) => all.map((th) => th.textContent))).includes("run.dt_safety"));
 }
 
 async function zooms_and_comes_back(page) {
@@ -241,7 +269,22 @@ async function fits_a_phone(browser) {
   const tip = await page.locator("#error-speed-0 .tip").boundingBox();
   assert.ok(tip.x >= 0 && tip.x + tip.width <= 390, "what a mark tells is cut");
   assert.ok(tip.height < 400, `what a mark tells is ${tip.height} pixels high`);
+  await cheapest_points_have_their_settings(page);
   await page.context().close();
+}
+
+// All of a cheapest point is on a phone, and its settings are those of the point.
+async function cheapest_points_have_their_settings(page) {
+  const rows = await page.$$eval("#decades tbody tr", (all) => all.map((row) => ({point: Number(row.dataset.point),
+    settings: row.querySelector("td.settings").textContent, sides: [...row.cells].map((cell) => cell.getBoundingClientRect())
+      .map((box) => [box.left, box.right, box.height])})));
+  assert.equal(rows.length, 3);
+  const points = await page.evaluate(() => study.points);
+  for (const row of rows) {
+    for (const [key, value] of [...points[row.point].scene, ...points[row.point].arch])
+      assert.ok(row.settings.includes(`${key} ${value}`), `no ${key} ${value} in: ${row.settings}`);
+    for (const [left, right, height] of row.sides) assert.ok(left >= 0 && right <= 390 && height > 0, `a cell from ${left} to ${right}, ${height} high`);
+  }
 }
 
 async function prints(page) {
@@ -284,6 +327,7 @@ async function hostile_text_is_text(browser) {
   const forced = problems.splice(before);
   assert.ok(forced.every((problem) => problem.includes("none.png")), String(forced));
   assert.ok(forced.some((problem) => problem.includes("Content Security Policy")), String(forced));
+  await equal_columns_are_folded(page);
   await page.context().close();
 }
 
@@ -296,7 +340,7 @@ try {
   await pressing_a_mark_finds_its_row(page);
   await selectors_change_charts(page, study);
   await tables_sort_and_filter(page, study);
-  await table_shows_what_was_chosen(page);
+  await table_shows_what_was_chosen(page, study);
   await zooms_and_comes_back(page);
   await prints(page);
   await fits_a_phone(browser);

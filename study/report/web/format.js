@@ -30,8 +30,17 @@ function settings_of(point) {
   if (point.threads !== null) rows.push(["threads", point.threads]);
   return rows.concat(point.scene, point.arch);
 }
+
+// Whether the values of all points are one; of one point nothing is worth folding.
+const all_equal = (values) => values.length > 1 && values.every((value) => value === values[0]);
+// Settings that differ between points: the others tell nothing of one.
+const differs = (() => {
+  const all = study.points.map((point) => new Map(settings_of(point)));
+  const names = new Set(all.flatMap((settings) => [...settings.keys()]));
+  return new Set([...names].filter((name) => !all_equal(all.map((settings) => settings.get(name)))));
+})();
 const settings_text = (point) =>
-  settings_of(point).slice(1).map(([name, value]) => name + " " + value).join("; ");
+  settings_of(point).slice(1).filter(([name]) => differs.has(name)).map(([name, value]) => name + " " + value).join("; ") || "–";
 
 // What a mark tells.
 function tip(n) {

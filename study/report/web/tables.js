@@ -9,6 +9,12 @@ const element = (tag, text, classes) => {
   return node;
 };
 
+// A name of a column, which may break behind a dot or an underscore.
+function broken_name(name) {
+  const parts = name.split(/(?<=[._])/);
+  return parts.flatMap((part, k) => (k + 1 < parts.length ? [part, element("wbr")] : [part]));
+}
+
 function row_of(cells) {
   const row = element("tr");
   for (const cell of cells) row.append(cell);
@@ -21,10 +27,11 @@ function fill_decades() {
   const error = study.errors[state.error], speed = study.speeds[state.speed];
   if (!error || !speed) return;
   const decades = study.decades[state.error][state.speed];
+  const compared = study.series.length > 1 ? study.series : [];  // one series is the whole
   table.append(element("thead"), element("tbody"));
   table.tHead.append(row_of([element("th", "error at most"), element("th", speed.label, "number"), element("th", "error", "number"),
-    element("th", "series"), element("th", "settings"),
-    ...study.series.map((s) => element("th", s.name, "number"))]));
+    element("th", "settings", "settings"), element("th", "series", "by"),
+    ...compared.map((s) => element("th", s.name, "number of"))]));
   const best_of = (series, limit) => {
     const fit = series.points.filter((n) => study.points[n].status === "done" && error.values[n] !== null &&
       error.values[n] <= limit && speed.values[n] !== null);
@@ -32,16 +39,18 @@ function fill_decades() {
   };
   for (const [exponent, n] of decades) {
     const series = series_of_point[n];
-    const name = element("td", series.name, "name");
+    const name = element("td", series.name, "name by");
     const swatch = element("span", "", "swatch");
     swatch.style.background = series.colour;
     name.prepend(swatch);
     const limit = exponent === null ? 0 : Number("1e" + exponent);
     const row = row_of([element("th", exponent === null ? "0" : power_of_ten(exponent)), element("td", number(speed.values[n], 3), "number best"),
-      element("td", number(error.values[n], 3), "number"), name, element("td", settings_text(study.points[n]), "settings"),
-      ...study.series.map((s) => {
+      element("td", number(error.values[n], 3), "number"), element("td", settings_text(study.points[n]), "settings"), name,
+      ...compared.map((s) => {
         const best = best_of(s, limit);
-        return element("td", best === null ? "–" : number(speed.values[best], 3), s === series ? "number best" : "number");
+        const cell = element("td", best === null ? "–" : number(speed.values[best], 3), s === series ? "number of best" : "number of");
+        cell.dataset.series = s.name;  // which a narrow screen shows beside the number
+        return cell;
       })]);
     row.dataset.point = n;
     table.tBodies[0].append(row);
@@ -49,10 +58,10 @@ function fill_decades() {
   if (!decades.length) table.tBodies[0].append(row_of([element("td", "No point has both an error and a speed.")]));
 }
 
-// name, value(n), text(n) (default: of the value), whether a number.
-function point_columns() {
+// name, value(n), whether a number, whether a key of scene or arch, whether it stands in any case. First what is compared, then the settings, then what else was measured.
+function all_columns() {
   const keys = (part) => [...new Set(study.points.flatMap((p) => p[part].map(([key]) => key)))];
-  const change = (part, key) => ({name: key, value: (n) => {
+  const change = (part, key) => ({name: key, setting: true, value: (n) => {
     const found = study.points[n][part].find(([k]) => k === key);
     if (!found) return null;
     const text = found[1].replace(/^"(.*)"$/, "$1"), as_number = Number(text);
@@ -63,10 +72,10 @@ function point_columns() {
   const chosen = [study.errors[state.error], study.speeds[state.speed]].filter((m) => m);
   const others = (all) => measures(all.filter((m) => !chosen.includes(m)));
   return [
-    {name: "point", value: (n) => n + 1, number: true}, of("engine", "engine"), of("arithmetic", "arithmetic"),
-    ...measures(chosen), of("status", "status"), of("threads", "threads", true), of("integrator", "integrator"),
-    ...(study.points.some((p) => p.machine) ? [of("machine", "machine")] : []),
+    {name: "point", value: (n) => n + 1, number: true, always: true}, ...measures(chosen).map((column) => ({...column, always: true})),
+    of("engine", "engine"), of("arithmetic", "arithmetic"),
     ...keys("scene").map((key) => change("scene", key)), ...keys("arch").map((key) => change("arch", key)),
+    of("threads", "threads", true), of("integrator", "integrator"), of("machine", "machine"), of("status", "status"),
     of("time step, s", "dt", true),
     ...others(study.errors),
     ...study.figure_names.map((name, k) => ({name: name + (study.figure_units[k] ? ", " + study.figure_units[k] : ""),
@@ -77,8 +86,23 @@ function point_columns() {
   ];
 }
 
+const is_none = (value) => value === null || value === undefined || value === "";
+const shown_value = (value) => (is_none(value) ? "–" : typeof value === "number" ? number(value) : value);
+
+// Columns in which points differ; `same` tells the others, but for those that no point has.
+function point_columns() {
+  const columns = [], same = [];
+  for (const column of all_columns()) {
+    const values = study.points.map((_, n) => column.value(n));
+    if (column.setting) column.number = values.every((value) => value === null || typeof value === "number");
+    if (column.always || !all_equal(values.map((value) => (is_none(value) ? null : value)))) columns.push(column);
+    else if (!is_none(values[0])) same.push(`${column.name} = ${shown_value(values[0])}`);
+  }
+  return {columns, same: same.length ? `All points have: ${same.join("; ")}.` : ""};
+}
+
 function compare_values(a, b) {
-  const none_a = a === null || a === undefined || a === "", none_b = b === null || b === undefined || b === "";
+  const none_a = is_none(a), none_b = is_none(b);
   if (none_a || none_b) return none_a && none_b ? 0 : none_a ? Infinity : -Infinity;  // last, either way
   if (typeof a === "number" && typeof b === "number") return a - b;
   return String(a) < String(b) ? -1 : String(a) > String(b) ? 1 : 0;
@@ -87,11 +111,13 @@ function compare_values(a, b) {
 // Stands in the order in which the reader sorted it last.
 function fill_points() {
   const table = document.getElementById("points");
-  const columns = point_columns();
+  const {columns, same} = point_columns();
+  document.getElementById("same").textContent = same;
   table.replaceChildren(element("thead"), element("tbody"));
   table.tHead.append(row_of(columns.map((column) => {
-    const head = element("th", undefined, column.number ? "number" : "");
-    const button = element("button", column.name);
+    const head = element("th", undefined, (column.number ? "number" : "") + (column.setting ? " setting" : ""));
+    const button = element("button");
+    button.append(...broken_name(column.name));
     button.type = "button";
     button.addEventListener("click", () => {
       state.down = state.sorted === column.name && !state.down;
@@ -105,8 +131,7 @@ function fill_points() {
     const row = row_of(columns.map((column) => {
       const value = column.value(n);
       const kind = column.name === "status" && value !== "done" ? value : column.name === "why" ? "why" : "name";
-      return element("td", column.name === "why" ? value : typeof value === "number" ? number(value) : value === null || value === "" ? "–" : value,
-        column.number || typeof value === "number" ? "number" : kind);
+      return element("td", column.name === "why" ? value : shown_value(value), column.number || typeof value === "number" ? "number" : kind);
     }));
     row.dataset.point = n;
     row.classList.toggle("chosen", n === state.chosen);
