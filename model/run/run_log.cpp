@@ -12,7 +12,8 @@ namespace cuboct {
 namespace {
 
 constexpr uint64_t kParts = 20, kTenths = 10;
-// Step, time, steps/s, time left: before the curves.
+// Step, time, steps/s, time left: before the curves. Static loading has no speed by its time steps, and
+// counts its load steps.
 constexpr const char* kFixed = "{:>9} {:>10} {:>8} {:>8}";
 constexpr size_t kFixedWidth = 38;
 
@@ -41,13 +42,18 @@ int rank_of(const Curve& curve) {
   return curve.name.starts_with("energy.") || curve.name == "pressure" ? 2 : 1;
 }
 
-// Of each part the first sample, else its first step.
-std::vector<uint64_t> row_steps(uint64_t steps, const std::vector<uint64_t>& samples) {
+// Of each part the first sample, else its first step. With static loading the first load step: between two of
+// them nothing changes.
+std::vector<uint64_t> row_steps(uint64_t steps, const std::vector<uint64_t>& samples, uint64_t load) {
   const auto begin_of = [steps](uint64_t part) {
     return steps / kParts * part + steps % kParts * part / kParts;
   };
   std::vector<uint64_t> rows;
   for (uint64_t part = 0; part <= kParts; ++part) {
+    if (load > 0) {
+      rows.push_back((begin_of(part) + load - 1) / load * load);
+      continue;
+    }
     const auto sample = std::ranges::lower_bound(samples, begin_of(part));
     rows.push_back(sample != samples.end() && *sample < begin_of(part + 1) ? *sample : begin_of(part));
   }
@@ -65,8 +71,10 @@ const char* to_string(LogRows rows) {
 RunLog::RunLog(Run run, const Scene& scene, const std::vector<Curve>& curves)
     : run_(std::move(run)),
       dt_(scene.rule.dt),
-      progress_(run_.engine, run_.steps, run_.particles, run_.rows != LogRows::quiet) {
-  if (run_.rows == LogRows::parts) rows_ = row_steps(run_.steps, run_.samples);
+      load_(scene.loading ? scene.loading->every : 0),
+      progress_(load_ > 0 ? run_.engine + ", loading" : run_.engine,
+                load_ > 0 ? run_.steps / load_ : run_.steps, run_.particles, run_.rows != LogRows::quiet) {
+  if (run_.rows == LogRows::parts) rows_ = row_steps(run_.steps, run_.samples, load_);
   if (!has_rows(run_.rows)) return;
   const bool falls = std::ranges::any_of(scene.rule.types, [](auto& type) { return !type.gravity.isZero(); });
   const size_t most = line_width();
@@ -91,7 +99,7 @@ RunLog::RunLog(Run run, const Scene& scene, const std::vector<Curve>& curves)
 void RunLog::begin(uint64_t step) {
   first_ = shown_ = step;
   begin_ = last_ = Clock::now();
-  progress_.begin(step);
+  progress_.begin(load_ > 0 ? step / load_ : step);
 }
 
 uint64_t RunLog::next_row(uint64_t step) const {
@@ -111,6 +119,7 @@ bool RunLog::is_due(uint64_t step, bool sampled) const {
   if (run_.rows == LogRows::parts) return !any_ || next_row(shown_) <= step;
   if (run_.rows != LogRows::seconds) return false;
   if (!any_) return true;
+  if (load_ > 0 && step % load_ != 0) return false;
   const auto now = Clock::now();
   const bool due = between(last_, now) >= interval(between(begin_, now)) ||
                    step - shown_ >= std::max<uint64_t>(run_.steps / kTenths, 1);
@@ -119,7 +128,7 @@ bool RunLog::is_due(uint64_t step, bool sampled) const {
 
 void RunLog::at(uint64_t step, bool sampled, const Latest& latest) {
   if (is_due(step, sampled)) row(step, sampled, latest);
-  progress_.at(step);
+  progress_.at(load_ > 0 ? step / load_ : step);
 }
 
 void RunLog::end(uint64_t step, bool sampled, const Latest& latest) {
@@ -128,7 +137,8 @@ void RunLog::end(uint64_t step, bool sampled, const Latest& latest) {
 }
 
 void RunLog::head() {
-  std::string names = fmt::format(fmt::runtime(kFixed), "step", "time", "steps/s", "left"),
+  std::string names =
+                  fmt::format(fmt::runtime(kFixed), "step", "time", load_ > 0 ? "loads" : "steps/s", "left"),
               units = fmt::format(fmt::runtime(kFixed), "", "s", "", "h:m:s");
   for (const Column& column : columns_) {
     names += fmt::format("{:>{}}", column.name, column.width);
@@ -148,7 +158,9 @@ void RunLog::row(uint64_t step, bool sampled, const Latest& latest) {
       moved ? age / static_cast<double>(step - first_) * static_cast<double>(run_.steps - step) : 0;
   std::string text =
       fmt::format(fmt::runtime(kFixed), step, fmt::format("{:.4g}", static_cast<double>(step) * dt_),
-                  moved ? fmt::format("{:.3g}", static_cast<double>(step - shown_) / since) : "-",
+                  load_ > 0 ? fmt::format("{}/{}", step / load_, run_.steps / load_)
+                  : moved   ? fmt::format("{:.3g}", static_cast<double>(step - shown_) / since)
+                            : "-",
                   moved || step == run_.steps ? clock_text(left) : "-");
   const std::vector<double> values = sampled ? latest() : std::vector<double>();
   for (const Column& column : columns_)

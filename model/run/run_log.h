@@ -61,7 +61,8 @@ class RunLog {
   void row(uint64_t step, bool sampled, const Latest& latest);
 
   Run run_;
-  double dt_;  // s
+  double dt_;      // s
+  uint64_t load_;  // time steps that make a load step of static loading; 0: motion
   std::vector<Column> columns_;
   std::vector<uint64_t> rows_;  // of LogRows::parts, ascending
   size_t dropped_ = 0;          // columns beyond the terminal's width

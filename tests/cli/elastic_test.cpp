@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/cli/refusal.h"
 
@@ -140,6 +141,18 @@ TEST(Static, RunWritesWhatARunWrites) {
   EXPECT_NEAR(summary["speed"]["value"].get<double>(), work, 1e-3 * work);
   EXPECT_EQ(summary["speed"]["unit"], "particles/s");
   EXPECT_EQ(summary["loading"]["value"].get<std::string>().find("static: at each load step "), 0U);
+  // While it goes: a row for each load step, and no speed of time steps that nothing makes.
+  std::istringstream err(answer.err);
+  std::vector<std::string> loads;
+  for (std::string line; std::getline(err, line);) {
+    std::istringstream words(line);
+    std::string step, time, load;
+    words >> step >> time >> load;
+    loads.push_back(step + " " + load);
+  }
+  EXPECT_EQ(loads, (std::vector<std::string>{"step loads", "s J", "0 0/5", "100 1/5", "200 2/5", "300 3/5",
+                                             "400 4/5", "500 5/5"}))
+      << answer.err;
   for (const char* file : {"trace.h5", "frames.xyz", "summary.json"})
     EXPECT_FALSE(contents(out + "/" + file).empty()) << file;
   const Answer report = bench.cuboct({"report", out});
