@@ -16,6 +16,7 @@
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/help.h"
+#include "cli/help_forms.h"
 #include "cli/programs.h"
 #include "hw/program/command_line.h"
 #include "hw/program/options.h"
@@ -77,6 +78,16 @@ std::vector<std::string> words_of(int argc, char** argv) {
   return words;
 }
 
+// Of words that end in "--help-as FORM", the same that end in "--help", and that form.
+HelpForm take_form(std::vector<std::string>& words) {
+  const size_t n = words.size();
+  if (n < 2 || words[n - 2] != "--help-as") return help_text;
+  const HelpForm form = help_form(words[n - 1]);
+  words.pop_back();
+  words.back() = "--help";
+  return form;
+}
+
 int tell(const InputError& error, bool as_json, int exit_code) {
   fmt::print(stderr, "{}\n", as_json ? error.json() : error.told());
   return exit_code;
@@ -108,15 +119,17 @@ void add_elsewhere(Command& app, const CommandRow& row, const std::vector<std::s
   });
 }
 
-int main_of(const std::vector<std::string>& words, bool as_json, std::span<const OwnCommand> own) {
+int main_of(const std::vector<std::string>& given, bool as_json, std::span<const OwnCommand> own) {
   int exit_code = 0;
+  std::vector<std::string> words = given;
+  HelpForm form = help_text;
   Command app("cuboct", "cuboct: particle matter and the hardware that computes it, the same bits.");
   app.version("--version", version_text, "Print version, commit and engines, and exit");
   app.require_command();
-  app.help("-h,--help", "print this help and exit", help_text);
+  app.help("-h,--help", "print this help and exit", [&form](const CommandText& text) { return form(text); });
   for (const CommandRow& row : command_rows()) {
     const auto mine = std::ranges::find(own, row.name, &OwnCommand::name);
-    mine != own.end() ? mine->add(app, exit_code) : add_elsewhere(app, row, words);
+    mine != own.end() ? mine->add(app, exit_code) : add_elsewhere(app, row, given);
   }
   // What an exception says in its own words: a message, perhaps of several lines.
   const auto plain = [&](const std::string& text, int code) {
@@ -125,6 +138,7 @@ int main_of(const std::vector<std::string>& words, bool as_json, std::span<const
     return code;
   };
   try {
+    form = take_form(words);
     check_words(app.text(), words);
     if (const auto asked = app.parse(words)) fmt::print("{}", *asked);
   } catch (const WrongWords& error) {

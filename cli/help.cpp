@@ -7,17 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <sstream>
-#include <string_view>
 
 namespace cuboct {
 namespace {
 
 constexpr size_t kColumns = 80, kIndent = 26;
 
-// In the order in which they are shown; commands of a group stand together.
-struct Entry {
-  std::string_view group, command, example;
-};
+using Entry = HelpEntry;
 constexpr std::array kEntries{
     Entry{"make a scene", "new", "cuboct new arm --like beam"},
     Entry{"make a scene", "check", "cuboct check scenes/coupon.toml"},
@@ -40,6 +36,10 @@ constexpr std::array kEntries{
     Entry{"study settings", "pitch", "cuboct pitch scenes/studies/pitch_bar.toml --error 10%"},
     Entry{"study settings", "stability", "cuboct stability scenes/undamped_block.toml"},
 };
+
+std::string value_of(const OptionText& option) {
+  return option.type_name == "TEXT" ? "WORD" : option.type_name;
+}
 
 // Breaks at blanks; `text` begins in the given column, further lines at kIndent.
 std::string wrapped(const std::string& text, size_t column) {
@@ -65,31 +65,15 @@ std::string row(const std::string& names, const std::string& text) {
                      wrapped(text, kIndent));
 }
 
-std::string value_of(const OptionText& option) {
-  return option.type_name == "TEXT" ? "WORD" : option.type_name;
-}
-
-std::string names_of(const OptionText& option) {
-  const std::string value = value_of(option);
-  return fmt::format("{}{}{}", fmt::join(option.names, ", "), value.empty() ? "" : " ", value);
-}
-
-std::string text_of(const OptionText& option) {
-  std::string text = option.description;
-  if (!option.shown_default.empty()) text += fmt::format("; default: {}", option.shown_default);
-  if (option.required && !option.names.empty()) text += "; required";
-  return text;
-}
-
 std::string of_command(const CommandText& command) {
   std::string usage = "usage: cuboct " + command.name + " [OPTIONS]", words, options;
   for (const OptionText& option : command.options) {
     if (option.names.empty()) {
       const std::string value = value_of(option);
       usage += option.required ? " " + value : fmt::format(" [{}]", value);
-      words += row(value, text_of(option));
+      words += row(option_names(option), option_text(option));
     } else {
-      options += row(names_of(option), text_of(option));
+      options += row(option_names(option), option_text(option));
     }
   }
   const auto entry = std::ranges::find(kEntries, command.name, &Entry::command);
@@ -112,6 +96,21 @@ std::string of_all(const CommandText& app) {
 }
 
 }  // namespace
+
+std::span<const HelpEntry> help_entries() { return kEntries; }
+
+std::string option_names(const OptionText& option) {
+  if (option.names.empty()) return value_of(option);
+  const std::string value = value_of(option);
+  return fmt::format("{}{}{}", fmt::join(option.names, ", "), value.empty() ? "" : " ", value);
+}
+
+std::string option_text(const OptionText& option) {
+  std::string text = option.description;
+  if (!option.shown_default.empty()) text += fmt::format("; default: {}", option.shown_default);
+  if (option.required && !option.names.empty()) text += "; required";
+  return text;
+}
 
 std::string help_text(const CommandText& command) {
   return command.commands.empty() ? of_command(command) : of_all(command);

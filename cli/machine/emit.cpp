@@ -142,10 +142,12 @@ void add_emit(Command& app, int&) {
       .option("--fit", options->fit,
               "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
               "hx8k, ecp5-25, ecp5-85 or xc7")
+      .proposed({"up5k", "hx8k", "ecp5-25", "ecp5-85", "xc7"})
       .type_name("TARGET");
   const Option board = command
                            .option("--board", options->emission.board.name,
                                    "add a top module, pins and a host link: icebreaker or ulx3s")
+                           .proposed({"icebreaker", "ulx3s"})
                            .type_name("B");
   command.option("--baud", options->emission.board.baud, "bits per second of the board's serial line")
       .needs(board)
@@ -158,6 +160,7 @@ void add_emit(Command& app, int&) {
   command
       .option("--bus", options->emission.board.bus,
               "add a wrapper with registers and an interrupt: axi4lite or wishbone")
+      .proposed({"axi4lite", "wishbone"})
       .type_name("BUS");
   command.flag(
       "--fixed-velocities", options->fixed_velocities,

@@ -90,11 +90,13 @@ void add_energy(Command& app, int& exit_code) {
       .option("--technology", options->technologies,
               "one or several, with commas: " + list_of(technology_names()) + ", or files")
       .delimiter(',')
+      .proposed(technology_names())
       .show_default("cmos45,cmos7")
       .type_name("NAME");
   command
       .option("--link", options->link,
               "links go between chips, by " + list_of(link_names()) + "; default: wires on chip")
+      .proposed(link_names())
       .type_name("KIND");
   command.option("--clock", options->clock, "of the machine").type_name("F").show_default();
   command

@@ -25,6 +25,7 @@ void add_synth(Command& app, int&) {
       .required()
       .type_name("DIR");
   command.option("--target", request.target, "up5k, hx8k, ecp5-25, ecp5-85, xc7 or asic")
+      .proposed({"up5k", "hx8k", "ecp5-25", "ecp5-85", "xc7", "asic"})
       .required()
       .type_name("T");
   command

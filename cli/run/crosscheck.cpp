@@ -327,6 +327,7 @@ void add_crosscheck(Command& app, int& exit_code) {
               "box that no "
               "cube divides")
       .delimiter(',')
+      .proposed(engines_that([](auto&) { return true; }))
       .type_name("A,B,...");
   command
       .option("--precision", options->choice.precision,

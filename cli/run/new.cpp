@@ -40,11 +40,16 @@ struct NewOptions {
   Answer answer;
 };
 
+std::vector<std::string> template_names() {
+  std::vector<std::string> names;
+  for (const Template& one : templates()) names.push_back(one.name);
+  return names;
+}
+
 const Template& template_of(const std::string& like) {
   const auto found = std::ranges::find(templates(), like, &Template::name);
   if (found != templates().end()) return *found;
-  std::vector<std::string> names;
-  for (const Template& one : templates()) names.push_back(one.name);
+  const std::vector<std::string> names = template_names();
   const std::string near = did_you_mean(like, names);
   throw InputError(fmt::format("unknown template '{}'", like),
                    near.empty() ? "one of " + list_of(names) : near);
@@ -86,7 +91,10 @@ void add_new(Command& app, int&) {
   auto options = std::make_shared<NewOptions>();
   Command command = add_command(app, "new");
   command.option("name", options->name, "the file, NAME.toml").type_name("NAME");
-  command.option("--like", options->like, "what it shows: see --list").show_default().type_name("TEMPLATE");
+  command.option("--like", options->like, "what it shows: see --list")
+      .proposed(template_names())
+      .show_default()
+      .type_name("TEMPLATE");
   command.flag("--list", options->list, "tell what templates there are");
   options->answer.add_to(command);
   command.flag("--force", options->force, "replace a file of that name");

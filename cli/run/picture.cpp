@@ -82,7 +82,9 @@ void add_picture(Command& app, int&) {
       .required()
       .type_name("DIR");
   command.option("--out", options->out, "the PNG file; default: DIR/picture.png").type_name("FILE");
-  command.option("--field", options->field, "strain, speed, thickness or broken (bonds)").show_default();
+  command.option("--field", options->field, "strain, speed, thickness or broken (bonds)")
+      .proposed({"strain", "speed", "thickness", "broken"})
+      .show_default();
   command
       .option("--steps", options->steps,
               "frames to draw, by their steps; default: first, last and two between")

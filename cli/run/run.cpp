@@ -259,10 +259,12 @@ void add_run(Command& app, int& exit_code) {
   options->input.add_to(command);
   options->input.add_start_to(command);
   options->input.add_stalls_to(command);
-  command.option(
-      "--engine", options->engine,
-      "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats); default: lattice, for "
-      "static loading reference");
+  command
+      .option(
+          "--engine", options->engine,
+          "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats); default: lattice, for "
+          "static loading reference")
+      .proposed(engines_that([](auto&) { return true; }));
   command.option("--steps", options->steps, "steps; default: the scene's")
       .check(whole_number)
       .type_name("N")

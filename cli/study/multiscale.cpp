@@ -126,6 +126,7 @@ void add_multiscale(Command& app, int& exit_code) {
               "also count a node for each element, in joules of these: " + list_of(technology_names()) +
                   ", or files")
       .delimiter(',')
+      .proposed(technology_names())
       .type_name("NAME");
   command.option("--clock", options->clock, "of the node").type_name("F").show_default();
   command.option("--fraction", options->fraction, "bits behind the point of the node's numbers")

@@ -171,6 +171,7 @@ void add_pitch(Command& app, int& exit_code) {
   command
       .option("--figure", options->figure,
               "modulus, strength, frequency, break_time, mean or final; default: modulus")
+      .proposed({"modulus", "strength", "frequency", "break_time", "mean", "final"})
       .type_name("KIND");
   command.option("--curve", options->curve, "of a probe; default: the stress of the only one of its kind")
       .type_name("CURVE");

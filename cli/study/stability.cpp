@@ -253,6 +253,7 @@ void add_stability(Command& app, int&) {
       .type_name("E")
       .show_default();
   command.option("--axis", options->axis, "of the strain; default: the tensile probe's, or the longest")
+      .proposed({"x", "y", "z"})
       .type_name("A");
   command.option("--resolution", options->resolution, "of the measured limits, relative")
       .type_name("R")

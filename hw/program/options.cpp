@@ -8,6 +8,16 @@
 namespace cuboct {
 namespace {
 
+// "NAME:{a,b}" lists its values, as CLI::IsMember describes itself.
+std::vector<std::string> values_in(const std::string& type) {
+  std::vector<std::string> values;
+  const size_t begin = type.find(":{"), end = type.find('}', begin);
+  if (begin == std::string::npos || end == std::string::npos) return values;
+  std::istringstream list(type.substr(begin + 2, end - begin - 2));
+  for (std::string value; std::getline(list, value, ',');) values.push_back(value);
+  return values;
+}
+
 OptionText text_of(const CLI::Option& option) {
   OptionText text;
   for (const std::string& name : option.get_snames()) text.names.push_back("-" + name);
@@ -15,9 +25,11 @@ OptionText text_of(const CLI::Option& option) {
   // "N" of "N:INT in [1 - 4096]": what an option accepts it says where it refuses.
   if (option.get_expected_max() > 0)
     text.type_name = option.get_type_name().substr(0, option.get_type_name().find(':'));
+  text.values = values_in(option.get_type_name());
   text.description = option.get_description();
   text.shown_default = option.get_default_str();
   text.required = option.get_required();
+  text.list = option.get_delimiter() != 0;
   return text;
 }
 
@@ -70,6 +82,12 @@ Option Option::one_of(std::initializer_list<const char*> values) {
 
 Option Option::one_of(std::initializer_list<int> values) {
   return Option(option_->check(CLI::IsMember(std::vector<int>(values))));
+}
+
+Option Option::proposed(const std::vector<std::string>& values) {
+  std::string list;
+  for (const std::string& value : values) list += (list.empty() ? "" : ",") + value;
+  return Option(option_->check(CLI::Validator([](std::string&) { return std::string(); }, "{" + list + "}")));
 }
 
 Option Option::check(const std::function<std::string(const std::string&)>& wrong) {

@@ -42,6 +42,8 @@ class Option {
   Option range(Number least, Number most);
   Option one_of(std::initializer_list<const char*> values);
   Option one_of(std::initializer_list<int> values);
+  // The same for completion alone: every value is taken here, as who reads it tells of a wrong one.
+  Option proposed(const std::vector<std::string>& values);
   // `wrong` returns what is wrong with a value as it was typed, or nothing.
   Option check(const std::function<std::string(const std::string&)>& wrong);
 
@@ -57,7 +59,9 @@ struct OptionText {
   std::vector<std::string> names;  // "-q", "--quiet"; none: a word without a name
   std::string type_name;           // of its value; empty: a flag
   std::string description, shown_default;
+  std::vector<std::string> values;  // those of one_of() or proposed(); empty: others
   bool required = false;
+  bool list = false;  // of several values, with a character between
 };
 
 // The same of a command, and of those below it.
