@@ -5,7 +5,7 @@
 
 namespace cuboct {
 
-CatchFromPython::CatchFromPython() {
+CatchForHost::CatchForHost() : catching_(std::make_unique<CatchInterrupt>()) {
   const pybind11::gil_scoped_acquire locked;
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
 }

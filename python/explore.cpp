@@ -100,7 +100,7 @@ Table explore(const ExploreAsked& asked) {
                      "cuboct explore --error asks its [search]");
   const DirectoryLock lock(asked.out, "cuboct explore");
   study::Store store(asked.out + "/results.db", plan);
-  const CatchFromPython catching;
+  const CatchForHost catching;
   study::Runner runner(plan, store, {.jobs = asked.jobs, .speed = asked.speed});
   try {
     runner.run();

@@ -1,5 +1,4 @@
-# Whether the Python module can be built: sets CUBOCT_HAS_PYTHON, and says so. To be included before anything is
-# compiled: what a module loads has to be independent of its place in memory.
+# Whether the Python module can be built: sets CUBOCT_HAS_PYTHON, and says so.
 set(CUBOCT_HAS_PYTHON OFF)
 if(NOT CUBOCT_PYTHON)
   message(STATUS "Python: left out, as CUBOCT_PYTHON is OFF")
@@ -26,6 +25,3 @@ if(no_numpy)
 endif()
 message(STATUS "Python: the module cuboct, for ${Python_EXECUTABLE} ${Python_VERSION}")
 set(CUBOCT_HAS_PYTHON ON)
-# One set of objects for programs and module. Nobody puts functions of his own in the place of ours: calls within a
-# file stay direct, and inlined.
-add_compile_options("$<$<COMPILE_LANGUAGE:C,CXX>:-fPIC;-fno-semantic-interposition>")

@@ -102,7 +102,7 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   };
   const Scratch scratch;
   const Input input = write_sources(sources, scratch);
-  const CatchFromPython catching;
+  const CatchForHost catching;
   const uint64_t steps = request.steps;
   result.recorded = unless_interrupted([&] {
     return EngineRun(asked.engine, input, loaded, asked.options, std::move(request),
@@ -134,7 +134,7 @@ Comparison crosscheck(const Sources& sources, const std::vector<std::string>& en
   const bool text = plan.program != nullptr;
   const Scratch scratch;
   const Input input = write_sources(sources, scratch);
-  const CatchFromPython catching;
+  const CatchForHost catching;
   RunRequest request;
   request.steps = steps.value_or(loaded.scene.steps);
   if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, request.steps);

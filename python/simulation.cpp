@@ -195,7 +195,7 @@ bool Simulation::is_over() const {
 }
 
 void Simulation::go_to(uint64_t end, bool until) {
-  const CatchFromPython catching;
+  const CatchForHost catching;
   while (now() < end && !(until && is_over())) {
     if (interrupted()) throw Interrupted();
     const uint64_t asked = piece(end - now()), wanted = now() + asked;

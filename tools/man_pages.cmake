@@ -1,6 +1,6 @@
 # Writes the man pages of PROGRAM and of its commands into the directory OUT, from what they say of themselves (cli/help_forms.h).
 # usage: cmake -D PROGRAM=build/cuboct -D OUT=DIR -P man_pages.cmake
-file(REMOVE_RECURSE ${OUT})
+
 function(page name)  # COMMAND...
   execute_process(COMMAND ${PROGRAM} ${ARGN} --help-as man OUTPUT_FILE ${OUT}/${name}.1 COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

@@ -40,7 +40,7 @@ function(cuboct_precompile directory)
     get_target_property(links ${target} LINK_LIBRARIES)
     get_target_property(from ${target} CUBOCT_HEADERS)
     # What is loaded at run time is compiled otherwise; what links nothing does not know the headers' folders.
-    if(target STREQUAL "${from}" OR NOT links OR NOT (type MATCHES "^(STATIC_LIBRARY|EXECUTABLE)$" OR (type STREQUAL OBJECT_LIBRARY AND from)))
+    if(target STREQUAL "${from}" OR from STREQUAL none OR NOT links OR NOT (type MATCHES "^(STATIC_LIBRARY|EXECUTABLE)$" OR (type STREQUAL OBJECT_LIBRARY AND from)))
       continue()
     endif()
     if(directory MATCHES "^${CMAKE_SOURCE_DIR}/tests")

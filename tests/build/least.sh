@@ -4,7 +4,7 @@
 # usage: least.sh ROOT BUILD_DIRECTORY
 set -euo pipefail
 root=$1 build=$2
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCUBOCT_{CUDA,FITS,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF >/dev/null
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCUBOCT_{CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF >/dev/null
 ninja -C "$build" cuboct cuboct-machine cuboct-lattice >"$build/log" 2>&1 || { tail -n 50 "$build/log"; exit 1; }
 
 refuses() {  # TEXT ARGUMENT...

@@ -26,12 +26,13 @@ lacks() {
   local target
   for target; do if grep -qx "$target" "$work/targets"; then echo "there is a target $target"; exit 1; fi; done
 }
-parts=(_cuboct cuboct_fit cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
+parts=(_cuboct cuboct_library cuboct_fit cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
 
-configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,FITS,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
+configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
 says "The gpu engine: without its program cuboct-gpu, as this build has sanitizers or CUBOCT_CUDA is OFF"
 says "The lattice engine: on one rank alone, as CUBOCT_MPI is OFF"
 says "Python: left out, as CUBOCT_PYTHON is OFF"
+says "The C++ library: left out, as this build has sanitizers or CUBOCT_LIBRARY is OFF"
 says "Studies: left out, as CUBOCT_STUDIES is OFF"
 says "Fits: left out, as CUBOCT_FITS is OFF"
 says "Synthesis: left out, as CUBOCT_SYNTH is OFF"

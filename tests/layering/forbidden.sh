@@ -4,7 +4,7 @@
 set -euo pipefail
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
-for d in model hw rtl synth emu study cli python tests; do
+for d in model hw rtl synth emu study cli python library tests; do
   [ ! -d "$1/$d" ] || tar -C "$1" --exclude=node_modules -cf - "$d" | tar -C "$copy" -xf -
 done
 echo '#include "hw/plan/plan.h"' >> "$copy/model/contract/state.h"

@@ -12,7 +12,7 @@ while IFS= read -r file; do
   grep -qE 'return (cuboct::)?(with_standard_streams|front)\(|^  cuboct::fill_standard_descriptors\(\);' <<<"$body" && continue
   echo "$file: main does not return with_standard_streams(...)"
   bad=1
-done < <(grep -rlE --include='*.cpp' --include='*.cu' '^int main\(' model hw synth emu study cli python 2>/dev/null)
+done < <(grep -rlE --include='*.cpp' --include='*.cu' '^int main\(' model hw synth emu study cli python library 2>/dev/null)
 [ "$count" -ge 8 ] || { echo "only $count programs found: the check sees nothing"; exit 1; }
 [ "$bad" = 0 ] && echo "$count programs take their standard streams first"
 exit "$bad"
