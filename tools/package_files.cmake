@@ -1,0 +1,26 @@
+# What package.cmake does to the files of the package in USR once they are there: links, man pages, pages as HTML, symbols.
+function(must)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE code)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "${ARGN}: ${code}\n${said}")
+  endif()
+endfunction()
+
+file(MAKE_DIRECTORY ${USR}/bin)
+file(CREATE_LINK ../${HOME}/bin/cuboct ${USR}/bin/cuboct SYMBOLIC)
+must(${CMAKE} -D PROGRAM=${CUBOCT} -D OUT=${USR}/share/man/man1 -P ${SOURCE}/tools/man_pages.cmake)
+file(COPY_FILE ${SOURCE}/CHANGELOG.md ${USR}/share/doc/cuboct/changelog)
+file(GLOB pages ${USR}/share/man/man1/*.1)
+must(gzip -9n ${pages} ${USR}/share/doc/cuboct/changelog)
+if(SITE)
+  must(${SITE} ${USR}/share/doc/cuboct/html)
+  file(REMOVE ${USR}/share/doc/cuboct/html/sitemap.xml.gz)  # of the day on which it is made
+endif()
+# Debian's libraries are where the loader looks, and none of a build directory's are wanted.
+file(GLOB_RECURSE built ${USR}/lib/*)
+foreach(file ${built})
+  if(NOT IS_SYMLINK ${file} AND (file MATCHES "\\.so(\\.|$)" OR file MATCHES "/bin/"))
+    file(RPATH_REMOVE FILE ${file})
+    must(${STRIP} --strip-unneeded --remove-section=.comment --remove-section=.note ${file})
+  endif()
+endforeach()
