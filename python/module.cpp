@@ -13,6 +13,7 @@
 #include "cli/run/summary.h"
 #include "cli/run/templates.h"
 #include "hw/engine/scene_engine.h"
+#include "hw/plan/reach_cost.h"
 #include "model/analysis/motion_warnings.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
@@ -128,6 +129,10 @@ py::dict dict_of(const WholeRun& run) {
   out["counters"] = counters;
   py::list warnings;
   for (const Finding& finding : trace.findings) warnings.append(finding.text);
+  if (std::string wide = machine ? reach_warning(scene, plan) : ""; !wide.empty())
+    warnings.push_back(std::move(wide));
+  const std::string reach = machine ? reach_line(scene, plan) : "";
+  out["reach"] = reach.empty() ? py::none() : py::cast(reach);
   out["warnings"] = warnings;
   out["stopped"] = trace.stop ? py::cast(trace.stop->text) : py::none();
   out["reached"] = trace.reached ? py::cast(reached_text(trace)) : py::none();
@@ -172,6 +177,7 @@ py::dict check(const Sources& sources) {
   out["steps"] = scene.steps;
   const bool machine = scene.rule.rounds == nullptr;
   out["cells"] = machine ? py::cast(plan.lattice.size()) : py::none();
+  out["cells_with_matter"] = machine ? py::cast(cells_with_matter(scene, plan)) : py::none();
   out["cell_edge"] = plan.rule.cell_edge;
   const CellEdges edges = plan.rule.edges();
   out["cell_edges"] = py::make_tuple(edges[0], edges[1], edges[2]);
@@ -179,6 +185,10 @@ py::dict check(const Sources& sources) {
   out["plan_hash"] = hex(plan.hash);
   std::vector<std::string> warnings = motion_warnings(scene);
   warnings.insert(warnings.end(), plan.warnings.begin(), plan.warnings.end());
+  if (std::string wide = machine ? reach_warning(scene, plan) : ""; !wide.empty())
+    warnings.push_back(std::move(wide));
+  const std::string reach = machine ? reach_line(scene, plan) : "";
+  out["reach"] = reach.empty() ? py::none() : py::cast(reach);
   out["warnings"] = warnings;
   out["engine"] = engine_for(scene);
   py::list names;

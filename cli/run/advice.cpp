@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/program/integer_program.h"
+#include "model/scene/auto_margin.h"
 
 namespace cuboct {
 namespace {
@@ -61,7 +62,7 @@ std::string what_happened(const StopReason& stop, const Plan& plan) {
   return "";
 }
 
-const char* what_helps(Fault fault, bool program) {
+const char* what_helps(Fault fault, bool program, bool foreseen) {
   switch (fault) {
     case Fault::velocity:
       return "use a smaller run.dt or a larger node.cell_edge; a run that was stable until then met an "
@@ -83,7 +84,10 @@ const char* what_helps(Fault fault, bool program) {
     case Fault::left_x:
     case Fault::left_y:
     case Fault::left_z:
-      return "raise reach.margin, or give reach.min and reach.max";
+      return foreseen ? "reach.margin = \"auto\" did not foresee it: give reach.margin in lengths, or "
+                        "reach.min and "
+                        "reach.max beside it"
+                      : "raise reach.margin, or give reach.min and reach.max";
     case Fault::link_check:
     case Fault::link_order:
     case Fault::link_silent:
@@ -108,7 +112,7 @@ std::string advice_on(const StopReason& stop, const Plan& plan, const Scene& sce
                              : "";
   return fmt::format("cell ({} {} {}) at ({:.4g}, {:.4g}, {:.4g}) m: {}; {}{}", c[0], c[1], c[2], centre[0],
                      centre[1], centre[2], what_happened(stop, plan),
-                     what_helps(stop.fault, plan.program != nullptr), dt);
+                     what_helps(stop.fault, plan.program != nullptr, has_auto_margin(scene)), dt);
 }
 
 }  // namespace cuboct

@@ -17,6 +17,7 @@
 #include "cli/run/summary.h"
 #include "hw/cost/cycles.h"
 #include "hw/cost/node_area.h"
+#include "hw/plan/reach_cost.h"
 #include "hw/plan/spared.h"
 #include "hw/program/options.h"
 #include "model/analysis/motion.h"
@@ -108,6 +109,20 @@ void add_looser(Items& items, const Scene& scene, const Plan& plan) {
 
 Items physics(const Loaded& loaded);
 
+// Those of a run, and of a lattice that is larger than the motion asks for.
+std::vector<std::string> check_warnings(const Loaded& loaded, bool real) {
+  std::vector<std::string> warnings = warnings_of(loaded, real);
+  if (real) return warnings;
+  if (std::string wide = reach_warning(loaded.scene, loaded.setup.plan); !wide.empty())
+    warnings.push_back(std::move(wide));
+  return warnings;
+}
+
+void add_reach(Items& items, const Loaded& loaded) {
+  if (const std::string reach = reach_line(loaded.scene, loaded.setup.plan); !reach.empty())
+    items.add("reach", reach);
+}
+
 }  // namespace
 
 Items resolve(const Loaded& loaded) {
@@ -130,6 +145,9 @@ Items resolve(const Loaded& loaded) {
     items.add(
         "cells per node", cells_of(plan.bricks.shape()), "",
         fmt::format("bricks of {}; {} cells", fmt::join(plan.bricks.shape(), " x "), plan.lattice.size()));
+  items.add("cells with matter", cells_with_matter(scene, plan), "cells",
+            fmt::format("at the start, of {}", plan.lattice.size()));
+  add_reach(items, loaded);
   items.add("capacity", plan.arch.capacity, "particles/cell");
   items.add("steps", scene.steps);
   if (scene.pitch > 0) items.add("pitch", scene.pitch, "m");
@@ -167,7 +185,8 @@ Items resolve(const Loaded& loaded) {
         fmt::format("of law {}", n + 1), rule.errors[n].worst_force, "N",
         fmt::format("at {:.4g} m; {:.2g} of its largest force", rule.errors[n].at, rule.errors[n].relative));
   add_looser(items, scene, plan);
-  if (const auto warnings = warnings_of(loaded, false); !warnings.empty()) add_warnings(items, warnings, {});
+  if (const auto warnings = check_warnings(loaded, false); !warnings.empty())
+    add_warnings(items, warnings, {});
   const auto beats = [](int count) { return fmt::format("{} beat{}", count, count == 1 ? "" : "s"); };
   items.add("halo record", plan.words.halo_bits, "bit", beats(plan.words.halo_beats));
   items.add("particle record", plan.words.particle_bits, "bit", beats(plan.words.migrate_beats));
@@ -256,12 +275,13 @@ Items physics(const Loaded& loaded) {
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
   const bool real = !has_machine(plan);
-  const std::vector<std::string> warnings = warnings_of(loaded, real);
+  const std::vector<std::string> warnings = check_warnings(loaded, real);
   if (real) {
     if (scene.rule.rounds == nullptr) items.add("machine", std::string(kNoFormats));
     if (!warnings.empty()) add_warnings(items, warnings, {});
     return items;
   }
+  add_reach(items, loaded);
   if (!plan.rule.cubic())
     items.add("machine", "none: nodes have cubic cells, and no cube divides the periodic box");
   else

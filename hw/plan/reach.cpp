@@ -14,8 +14,10 @@
 #include <utility>
 #include <vector>
 
+#include "model/analysis/motion_reach.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
+#include "model/scene/auto_margin.h"
 
 namespace cuboct {
 namespace {
@@ -238,9 +240,17 @@ std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, co
   const std::vector<std::string> run{"run.duration", "run.steps"};
   const std::string shorter = "a shorter run, or one in which bodies are moved less far";
   const bool moved = check_paths(scene, edge, period);
+  const bool automatic = has_auto_margin(scene);
+  const MotionReach motion = automatic ? motion_reach(scene) : MotionReach{};
   for (size_t id = 0; id < scene.body.size(); ++id) {
     const Vec3& x = scene.body.x[id];
-    const Vec3 displacement = scene.rule.types[scene.body.type[id]].velocity * duration;
+    const ParticleType& type = scene.rule.types[scene.body.type[id]];
+    const Vec3 displacement = type.velocity * duration;
+    Ranges around{-margin, margin};
+    if (automatic) {
+      const Ranges more = motion.pieces[motion.piece[id]].of(x, type);
+      around = {around.low + more.low, around.high + more.high};
+    }
     // Along one axis all between the ends is touched.
     const bool swept = sweeps_a_box(displacement);
     const auto stops = swept ? int64_t{1} : static_cast<int64_t>(stops_of(displacement, edge));
@@ -248,8 +258,12 @@ std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, co
       const Vec3 at =
           swept ? x : Vec3(x + displacement * static_cast<double>(k) / static_cast<double>(stops));
       const Vec3 to = swept ? Vec3(x + displacement) : at;
-      const double count = reach.add(layer(at.cwiseMin(to) - margin), layer(at.cwiseMax(to) + margin));
+      const double count =
+          reach.add(layer(at.cwiseMin(to) + around.low), layer(at.cwiseMax(to) + around.high));
       if (count == 0) continue;
+      if (displacement.isZero(0) && automatic && !std::isinf(count))
+        refuse({"reach.margin"}, "the motion of a particle spans", count,
+               "a shorter run, or reach.margin in lengths");
       if (displacement.isZero(0))
         refuse({std::isinf(count) ? "particle" : "reach.margin"},
                std::isinf(count) ? fmt::format("particle {} is", id) : "the reach of a particle spans", count,
@@ -268,7 +282,10 @@ std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, co
   auto cells = reach.cells(count);
   if (!cells)
     refuse(moved ? run : std::vector<std::string>{"reach.margin", "geometry", "box"}, "the body can reach",
-           static_cast<double>(count), moved ? shorter : "a smaller body, or a smaller reach.margin");
+           static_cast<double>(count),
+           moved       ? shorter
+           : automatic ? "a shorter run, or reach.margin in lengths"
+                       : "a smaller body, or a smaller reach.margin");
   return std::move(*cells);
 }
 

@@ -4,30 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "model/analysis/clusters.h"
 #include "model/contract/neighbours.h"
 #include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
-
-// Disjoint sets of particles, each named by its least member.
-class Clusters {
- public:
-  explicit Clusters(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  uint32_t find(uint32_t at) {
-    while (parent_[at] != at) at = parent_[at] = parent_[parent_[at]];
-    return at;
-  }
-  void join(uint32_t a, uint32_t b) {
-    const uint32_t x = find(a), y = find(b);
-    parent_[std::max(x, y)] = std::min(x, y);
-  }
-
- private:
-  std::vector<uint32_t> parent_;
-};
 
 // Of all pairs of types, squared, m^2.
 class Reach {

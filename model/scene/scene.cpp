@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "model/program/step_limit.h"
 #include "model/rules/no_rest.h"
 #include "model/rules/rounds_rule.h"
+#include "model/scene/auto_margin.h"
 #include "model/scene/readings.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
@@ -244,9 +246,17 @@ void check_static_rule(const ConfigTable& root, const Rule& rule) {
 }
 
 void read_reach(const ConfigTable& root, Scene& scene) {
+  if (const auto reach = root.find("reach"); reach && reach->is_string())
+    reach->fail("'reach' must be a table",
+                "for the cells that the motion asks for write margin = \"auto\" in [reach]");
   const auto table = root.table_at("reach");
   if (!table) return;
-  if (const auto margin = table->find("margin")) {
+  const auto margin = table->find("margin");
+  if (margin && margin->is_string() && margin->string() == "auto") {
+    scene.reach_margin = Vec3::Constant(kAutoMargin);
+  } else if (margin) {
+    if (margin->is_string() && std::isalpha(static_cast<unsigned char>(margin->string().c_str()[0])))
+      margin->fail(fmt::format("unknown margin '{}'", margin->string()), "\"auto\", one length or three");
     const auto values = margin->is_number() ? std::vector{margin->number(quantity::length)}
                                             : margin->numbers(quantity::length);
     if (values.size() != 1 && values.size() != 3) margin->fail("'margin' needs one length or three");

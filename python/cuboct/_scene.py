@@ -116,9 +116,10 @@ class Scene(_Tables):
     def check(self, arch: "ArchLike" = None, *, stage: str | None = None) -> dict[str, Any]:
         """Reads the scene as a run would, of stages the first or `stage`. InputError where it is wrong.
 
-        `title`; `particles`; `dt` and `dt_limit` (the largest stable one, None where unknown) in s; `steps`; `cells`; `cell_edges` along
-        x, y and z in m, and `cell_edge`, the longest; `nodes` of the machine (`cells` and `nodes` are None of a rule with rounds of its own, for
-        which no machine is built; `nodes` of cells that are no cubes, too); `plan_hash`; `warnings`;
+        `title`; `particles`; `dt` and `dt_limit` (the largest stable one, None where unknown) in s; `steps`; `cells`; `cells_with_matter`, at
+        the start; `cell_edges` along x, y and z in m, and `cell_edge`, the longest; `nodes` of the machine (`cells`, `cells_with_matter` and
+        `nodes` are None of a rule with rounds of its own, for which no machine is built; `nodes` of cells that are no cubes, too);
+        `plan_hash`; `reach`, what [reach] margin = "auto" tells, else None; `warnings`;
         `engine`, which runs it where none is named; `stages`, their names.
         """
         with sources(self, arch) as source:

@@ -75,6 +75,28 @@ class Changes(unittest.TestCase):
             # 100 steps of 10 us at 10 m/s^2.
             np.testing.assert_allclose(simulation.velocities[:, 2] - speed, -0.01, rtol=2e-3)
 
+    def test_a_reach_that_follows_the_motion(self):
+        scene = cuboct.Scene(
+            {
+                "units": "reduced",
+                "mass": 1.0,
+                "law": {"kind": "lj", "epsilon": 1.0, "sigma": 1.0, "cutoff": 2.5},
+                "particle": [{"position": [0, 0, 0], "velocity": [0, 0, 3.0]}],
+                "run": {"dt": 0.001, "steps": 5000},
+                "reach": {"margin": "auto"},
+            }
+        )
+        facts = scene.check()
+        self.assertEqual(facts["reach"], "2.5 around each particle, a cell edge; of 'matter' +z 15 more, by the initial velocity")
+        self.assertEqual((facts["cells_with_matter"], facts["warnings"]), (1, []))
+        self.assertEqual(facts["cells"], 3 * 3 * 9)
+        simulation = cuboct.Simulation(scene)
+        simulation.run()
+        np.testing.assert_allclose(simulation.positions, [[0, 0, 15]], atol=1e-3)
+        scene["reach"] = {"margin": 60.0}
+        self.assertIsNone(scene.check()["reach"])
+        self.assertRegex(scene.check()["warnings"][0], 'asks for 81 of them: set margin = "auto", or margin = .2.5, 2.5, 18. for 135$')
+
     def test_a_box_that_no_cube_divides(self):
         scene = cuboct.Scene(
             {
