@@ -35,6 +35,10 @@ void Items::add_range(const std::string& name, double last, double smallest, dou
       fmt::format(", \"smallest\": {}, \"largest\": {}", cuboct::json(smallest), cuboct::json(largest));
 }
 
+void Items::also(const std::string& member, const std::string& json) {
+  items_.back().more += fmt::format(", {}: {}", cuboct::json(member), json);
+}
+
 void Items::add_list(const std::string& name, const std::string& line, const std::vector<Items>& list) {
   Item item{name, "", "[", "", "", true};
   const char* separator = "";

@@ -34,6 +34,9 @@ class Items {
   // item "text"; in JSON {"value": [{"step": 1, ...}, ...]}, values alone.
   void add_list(const std::string& name, const std::string& line, const std::vector<Items>& list);
 
+  // A further member of the last one's JSON object, whose value is JSON already.
+  void also(const std::string& member, const std::string& json);
+
   // "name   value unit (note)" per line, values in one column.
   std::string text() const;
   // {"name": {"value": 1, "unit": "m", "note": "..."}, ...} with a final newline; blanks of names become '_'.

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "cli/run/measure_run.h"
+#include "cli/run/probe_lines.h"
 #include "cli/run/summary.h"
 #include "cli/run/templates.h"
 #include "hw/engine/scene_engine.h"
@@ -190,6 +191,23 @@ py::dict check(const Sources& sources) {
   const std::string reach = machine ? reach_line(scene, plan) : "";
   out["reach"] = reach.empty() ? py::none() : py::cast(reach);
   out["warnings"] = warnings;
+  py::dict probes;
+  for (const ProbeError& error : told_errors(scene, plan)) {
+    py::list errors;
+    for (const CurveError& curve : error.curves) {
+      py::dict one;
+      one["quantity"] = curve.quantity;
+      one["error"] = curve.error;
+      one["unit"] = curve.unit.empty() ? "1" : curve.unit;
+      one["of_means"] = curve.of_means;
+      errors.append(one);
+    }
+    py::dict told;
+    told["text"] = error_text(scene, error);
+    told["errors"] = errors;
+    probes[error.probe.c_str()] = told;
+  }
+  out["probes"] = probes;
   out["engine"] = engine_for(scene);
   py::list names;
   for (const StageName& stage : stages) names.append(stage.name);

@@ -12,6 +12,7 @@
 #include "cli/run/estimate.h"
 #include "cli/run/packing_text.h"
 #include "cli/run/plan_text.h"
+#include "cli/run/probe_lines.h"
 #include "cli/run/rule_integers.h"
 #include "cli/run/stages.h"
 #include "cli/run/summary.h"
@@ -31,12 +32,14 @@
 namespace cuboct {
 namespace {
 
-void add_table(Items& items, const std::string& name, const FixedTable& table) {
+void add_table(Items& items, const std::string& name, const FixedTable& table, const std::string& why) {
   const std::string shape = table.shape == TableShape::uniform
                                 ? "uniform in r^2"
                                 : fmt::format("octaves of r^2, {} bins each", uint64_t{1} << table.bin_bits);
-  items.add(name, fmt::format("{}, degree {}, {} entries, {} fractional bits", shape, table.degree,
-                              table.c0.size(), table.value_frac));
+  items.add(name,
+            fmt::format("{}, degree {}, {} entries, {} fractional bits", shape, table.degree, table.c0.size(),
+                        table.value_frac),
+            why);
 }
 
 // What the plan leaves out, each with what its records would be longer by. Pair scales are
@@ -89,6 +92,7 @@ std::string strength_reason(const Plan& plan) {
   constexpr int kMultiplier = 18;
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
+  if (std::string why = reason_of(plan, "strength_bits"); !why.empty()) return why;
   const int more = w.strength_bits - kMultiplier;
   if (more <= 0) return "one multiplier of an FPGA takes them";
   const bool kicks = rule.force.value_frac - more + w.difference_frac < w.velocity_frac();
@@ -170,9 +174,9 @@ Items resolve(const Loaded& loaded) {
   items.add("velocity bits", w.velocity_bits, "", reason_of(plan, "velocity_bits"));
   items.add("strength bits", w.strength_bits, "", strength_reason(plan));
   items.add("sum bits", w.sum_bits, "", reason_of(plan, "sum_bits"));
-  add_table(items, "force table", rule.force);
+  add_table(items, "force table", rule.force, reason_of(plan, "index_bits"));
   if (rule.damped) {
-    add_table(items, "damping table", rule.damp);
+    add_table(items, "damping table", rule.damp, {});
     items.add("relative velocity bits", w.relative_velocity_bits, "",
               reason_of(plan, "relative_velocity_bits"));
     items.add("relative velocity fraction", w.relative_velocity_frac, "",
@@ -185,6 +189,7 @@ Items resolve(const Loaded& loaded) {
         fmt::format("of law {}", n + 1), rule.errors[n].worst_force, "N",
         fmt::format("at {:.4g} m; {:.2g} of its largest force", rule.errors[n].at, rule.errors[n].relative));
   add_looser(items, scene, plan);
+  add_probe_errors(items, scene, plan);
   if (const auto warnings = check_warnings(loaded, false); !warnings.empty())
     add_warnings(items, warnings, {});
   const auto beats = [](int count) { return fmt::format("{} beat{}", count, count == 1 ? "" : "s"); };
@@ -272,6 +277,7 @@ Items physics(const Loaded& loaded) {
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));
   if (cost.probing > 0) items.add("probes", readings_text(scene.probe_every, cost.probing, cost));
   if (cost.energies > 0) items.add("energy", energies_text(scene, cost));
+  add_probe_errors(items, scene, plan);
   items.add("disk", fmt::format("{} with --out, {} frame{}", in_bytes(cost.disk), times_text(cost.frames),
                                 cost.frames == 1 ? "" : "s"));
   const bool real = !has_machine(plan);

@@ -40,8 +40,8 @@ int bits_for(double x) { return static_cast<int>(std::ceil(-std::log2(x) - 1e-9)
 
 class Chooser {
  public:
-  Chooser(const Scene& scene, double edge, const Widths& asked)
-      : scene_(scene), edge_(edge), asked_(asked), motion_(motion_of(scene)) {
+  Chooser(const Scene& scene, double edge, const Widths& asked, double accuracy)
+      : scene_(scene), edge_(edge), asked_(asked), accuracy_(accuracy), motion_(motion_of(scene)) {
     const Rule& rule = scene.rule;
     kick_ = motion_.bond_stiffness * rule.dt * rule.dt / rule.heaviest();
     strain_ = motion_.strain * motion_.rest_distance / edge;
@@ -60,7 +60,7 @@ class Chooser {
     gain();
     w.strength_bits = asked_.strength_bits;  // quantise chooses
     const double force = motion_.bond_stiffness * motion_.strain * motion_.rest_distance;
-    result_.half_unit = force > 0 ? 0.5 * scene_.accuracy * force : std::numeric_limits<double>::infinity();
+    result_.half_unit = force > 0 ? 0.5 * accuracy_ * force : std::numeric_limits<double>::infinity();
     return std::move(result_);
   }
 
@@ -77,9 +77,9 @@ class Chooser {
     int wanted = kLeastDifference;
     std::string why = "the least that is taken";
     if (strain_ > 0)
-      if (const int bits = bits_for(strain_ * scene_.accuracy); bits > wanted)
+      if (const int bits = bits_for(strain_ * accuracy_); bits > wanted)
         wanted = bits, why = fmt::format("a strain of {:.2g}, by {}, has {:.3g} units", motion_.strain,
-                                         motion_.strain_of, 1 / scene_.accuracy);
+                                         motion_.strain_of, 1 / accuracy_);
     const RoundsRule* rounds = scene_.rule.rounds.get();
     if (rounds != nullptr && rounds->text() != nullptr && has_reference_bonds(scene_.rule))
       wanted = kMostDifference, why = "bonds that last open by little";
@@ -97,7 +97,7 @@ class Chooser {
 
   void velocity() {
     Widths& w = result_.widths;
-    const double dt = scene_.rule.dt, twice = 2 * std::min(scene_.accuracy, kMostOff);
+    const double dt = scene_.rule.dt, twice = 2 * std::min(accuracy_, kMostOff);
     int wanted = w.position_frac + kLeastGuard;
     std::string why = "the least that is taken";
     const auto want = [&](int bits, std::string reason) {
@@ -105,7 +105,7 @@ class Chooser {
     };
     const auto to_accuracy = [&](double per_step, const std::string& what) {
       if (per_step > 0)
-        want(bits_for(twice * per_step / edge_), fmt::format("{} to {:.2g}", what, scene_.accuracy));
+        want(bits_for(twice * per_step / edge_), fmt::format("{} to {:.2g}", what, accuracy_));
     };
     to_accuracy(motion_.slowest_imposed * dt,
                 fmt::format("an imposed velocity of {:.3g} m/s", motion_.slowest_imposed));
@@ -135,9 +135,9 @@ class Chooser {
     const double dt = scene_.rule.dt;
     int wanted = std::min(kLeastRelative, w.velocity_frac());
     std::string why = "the least that is taken";
-    if (const double slow = scene_.accuracy * motion_.strain * motion_.sound_speed * dt / edge_; slow > 0)
+    if (const double slow = accuracy_ * motion_.strain * motion_.sound_speed * dt / edge_; slow > 0)
       if (const int bits = bits_for(slow); bits > wanted)
-        wanted = bits, why = fmt::format("damps what strains by {:.2g}", scene_.accuracy * motion_.strain);
+        wanted = bits, why = fmt::format("damps what strains by {:.2g}", accuracy_ * motion_.strain);
     if (left_ && left_->relative_velocity_frac > wanted) wanted = left_->relative_velocity_frac, why = kLeft;
     double fastest = 4 * motion_.initial_speed;
     for (const ParticleType& type : scene_.rule.types)
@@ -177,17 +177,18 @@ class Chooser {
     }
     int wanted = kGain, most = kMostGainFrac;
     if (largest > 0) {
-      wanted = std::max(wanted, bits_for(2 * std::min(scene_.accuracy, kMostOff) * least));
+      wanted = std::max(wanted, bits_for(2 * std::min(accuracy_, kMostOff) * least));
       most = std::min(most, kGainBits - 2 + bits_for(largest * (1 + 1e-4)));
     }
     w.gain_frac =
         take("gain_frac", asked_.gain_frac, wanted, std::max(4, most),
-             wanted > kGain ? fmt::format("gains to {:.2g}", scene_.accuracy) : "the least that is taken");
+             wanted > kGain ? fmt::format("gains to {:.2g}", accuracy_) : "the least that is taken");
   }
 
   const Scene& scene_;
   double edge_;
   const Widths& asked_;
+  double accuracy_;
   Motion motion_;
   double kick_ = 0;    // cells/step that a bond's stretch of one cell gives the heaviest in a step
   double strain_ = 0;  // cells: what the expected strain stretches a bond by
@@ -199,8 +200,8 @@ class Chooser {
 
 }  // namespace
 
-AutoWidths auto_widths(const Scene& scene, double edge, const Widths& asked) {
-  return Chooser(scene, edge, asked).choose();
+AutoWidths auto_widths(const Scene& scene, double edge, const Widths& asked, double accuracy) {
+  return Chooser(scene, edge, asked, accuracy > 0 ? accuracy : scene.accuracy).choose();
 }
 
 std::vector<std::string> width_warnings(const Scene& scene, double edge, const AutoWidths& taken,

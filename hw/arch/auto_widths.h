@@ -30,8 +30,8 @@ struct AutoWidths {
   std::vector<WidthReason> reasons;
 };
 
-// `edge`: of a cell, m. Keys that `asked` sets (not kAutomatic) are kept.
-AutoWidths auto_widths(const Scene& scene, double edge, const Widths& asked);
+// `edge`: of a cell, m. Keys that `asked` sets (not kAutomatic) are kept. `accuracy`: 0 is the scene's.
+AutoWidths auto_widths(const Scene& scene, double edge, const Widths& asked, double accuracy = 0);
 
 // What the widths taken cannot do to the scene's accuracy, one line each.
 std::vector<std::string> width_warnings(const Scene& scene, double edge, const AutoWidths& taken,

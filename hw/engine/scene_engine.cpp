@@ -5,6 +5,7 @@
 
 #include "hw/engine/engine_kind.h"
 #include "hw/engine/engines.h"
+#include "hw/plan/probe_accuracy.h"
 #include "hw/plan/real_plan.h"
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
@@ -50,8 +51,13 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
   try {
     return plan_of(scene, arch, form);
   } catch (const InputError&) {
-    if (!doubles || formats_hold(scene, arch)) throw;
-    return real_plan_of(scene, arch);
+    if (!doubles) throw;
+    if (!formats_hold(scene, arch)) return real_plan_of(scene, arch);
+    if (!asks_accuracy(scene)) throw;
+    // What no formats keep, doubles do.
+    Scene calm = scene;
+    for (Probe& probe : calm.probes) probe.accuracy = 0;
+    return plan_of(calm, arch, form);
   }
 }
 

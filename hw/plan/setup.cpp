@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "hw/arch/cell_box.h"
+#include "hw/plan/probe_accuracy.h"
 #include "hw/plan/reach.h"
 #include "model/base/hash.h"
 #include "model/contract/quantise.h"
@@ -188,9 +189,10 @@ Plan plan_with(const Scene& scene, Arch arch, CellForm form, See see, bool progr
   // on faces; along z a flat body's only plane does.
   Vec3 origin = Vec3::Constant(INFINITY);
   for (const Vec3& x : scene.packing().x) origin = origin.cwiseMin(x);
-  const AutoWidths chosen = auto_widths(scene, edge, arch.widths);
+  AutoWidths chosen = auto_widths(scene, edge, arch.widths);
   FixedRule rule = text != nullptr ? quantise_without_law(scene.rule, edges, chosen.widths)
                                    : fixed_rule(scene, arch, edges, chosen);
+  if (asks_accuracy(scene)) refine_for_probes(scene, arch, edges, chosen, rule);
   arch.widths = rule.widths;
   arch.table.index_bits = rule.force.index_bits;
   const double lowest = origin[2];
@@ -284,7 +286,13 @@ CellEdges cell_edges_of(const Scene& scene, const Arch& arch, CellForm form) {
 }
 
 Arch settled(const Scene& scene, Arch arch) {
-  arch.widths = auto_widths(scene, cell_edges_of(scene, arch, CellForm::any).longest, arch.widths).widths;
+  const CellEdges edges = cell_edges_of(scene, arch, CellForm::any);
+  AutoWidths chosen = auto_widths(scene, edges.longest, arch.widths);
+  if (asks_accuracy(scene)) {
+    FixedRule rule = fixed_rule(scene, arch, edges, chosen);
+    refine_for_probes(scene, arch, edges, chosen, rule);
+  }
+  arch.widths = chosen.widths;
   return arch;
 }
 

@@ -33,7 +33,7 @@ Spared spared(const Plan& plan) {
 
 std::optional<LooserFormats> looser_formats(const Scene& scene, const Plan& plan) {
   // Formats that are chosen are no matter of accuracy.
-  if (std::ranges::any_of(plan.reasons, &WidthReason::asked)) return std::nullopt;
+  if (std::ranges::any_of(plan.reasons, &WidthReason::asked) || asks_accuracy(scene)) return std::nullopt;
   const FixedRule& rule = plan.rule;
   Scene loose = scene;
   loose.accuracy *= 10;

@@ -12,9 +12,6 @@
 namespace cuboct {
 namespace {
 
-constexpr double kMostStrain = 0.2;  // a crystal holds no more
-
-bool driven(const ParticleType& type) { return type.pd || type.imposed != std::array<bool, 3>{}; }
 bool moves_freely(const ParticleType& type) { return type.imposed != std::array<bool, 3>{true, true, true}; }
 
 // Formats that a state brings along already hold its motion: the scene then adds what it would have from its
@@ -112,6 +109,8 @@ std::vector<Box> pulled_boxes(const Scene& scene) {
 
 }  // namespace
 
+bool driven(const ParticleType& type) { return type.pd || type.imposed != std::array<bool, 3>{}; }
+
 Motion motion_of(const Scene& scene) {
   const Rule& rule = scene.rule;
   Motion motion;
@@ -124,9 +123,9 @@ Motion motion_of(const Scene& scene) {
     if (driven(rule.types[body.type[i]])) held.add(body.x[i]);
   }
   const double length = std::max(all.empty() ? 0 : (all.high - all.low).maxCoeff(), motion.rest_distance);
-  const auto strains = [&](double strain, const std::string& by) {
+  const auto strains = [&](double strain, StrainCause cause, const std::string& by) {
     strain = std::min(strain, kMostStrain);
-    if (c > 0 && strain > motion.strain) motion.strain = strain, motion.strain_of = by;
+    if (c > 0 && strain > motion.strain) motion.strain = strain, motion.cause = cause, motion.strain_of = by;
   };
 
   const std::vector<Box> pulled = pulled_boxes(scene);
@@ -139,7 +138,8 @@ Motion motion_of(const Scene& scene) {
       double apart = all_driven ? 0 : speed;
       for (const ParticleType& other : rule.types)
         if (driven(other)) apart = std::max(apart, (type.velocity - other.velocity).norm());
-      strains(std::max(apart / c, apart * duration / length), "the velocity imposed on '" + type.name + "'");
+      strains(std::max(apart / c, apart * duration / length), StrainCause::imposed,
+              "the velocity imposed on '" + type.name + "'");
     }
     // Of a force and a weight that balance, neither may be lost.
     if (const double g = std::max(type.gravity.norm(), type.pull.norm()); g > 0)
@@ -148,24 +148,30 @@ Motion motion_of(const Scene& scene) {
       // The stress is that of the pulled layer's mass: its depth counts, not the body's length.
       const Vec3 size = pulled[t].high - pulled[t].low;
       const double depth = type.pull.cwiseAbs().dot(size) / a + motion.rest_distance;
-      strains(std::min(a * duration / c, a * depth / (c * c)), "the force on '" + type.name + "'");
+      strains(std::min(a * duration / c, a * depth / (c * c)), StrainCause::force,
+              "the force on '" + type.name + "'");
     }
     const Vec3 weight = type.gravity - type.pull;
     if (const double g = weight.norm(); g > 1e-12 * type.gravity.norm()) {
-      strains(std::min(g * duration / c, g * length / (c * c)), "gravity");
-      if (!driven(type)) strains(bending(all, held, weight, c, duration), "gravity, which bends it");
+      strains(std::min(g * duration / c, g * length / (c * c)), StrainCause::gravity, "gravity");
+      if (!driven(type))
+        strains(bending(all, held, weight, c, duration), StrainCause::bending, "gravity, which bends it");
     }
   }
   const Speeds speeds = speeds_of(scene);
   motion.initial_speed = speeds.all;
   // What rounding leaves of a fit is no motion.
-  if (speeds.left > 1e-9 * speeds.all) strains(speeds.left / c, "the initial velocities");
+  if (speeds.left > 1e-9 * speeds.all)
+    strains(speeds.left / c, StrainCause::initial, "the initial velocities");
   if (speeds.all > 0)
     for (const ParticleType& type : rule.types)
-      if (driven(type)) strains((speeds.mean - type.velocity).norm() / c, "the initial velocities");
-  if (speeds.rotation > 1e-9 * speeds.all) strains(std::pow(speeds.rotation / c, 2), "the initial rotation");
+      if (driven(type))
+        strains((speeds.mean - type.velocity).norm() / c, StrainCause::initial, "the initial velocities");
+  if (speeds.rotation > 1e-9 * speeds.all)
+    strains(std::pow(speeds.rotation / c, 2), StrainCause::rotation, "the initial rotation");
   if (scene.expected_strain > 0)
-    motion.strain = scene.expected_strain, motion.strain_of = "run.expected_strain";
+    motion.strain = scene.expected_strain, motion.cause = StrainCause::said,
+    motion.strain_of = "run.expected_strain";
   return motion;
 }
 

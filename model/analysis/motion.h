@@ -3,11 +3,15 @@
 // within a factor of a few, from closed forms; formats of numbers are chosen by them.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "model/scene/scene.h"
 
 namespace cuboct {
+
+// What makes the strain that Motion tells.
+enum class StrainCause : uint8_t { none, said, imposed, force, gravity, bending, initial, rotation };
 
 struct Motion {
   double slowest_imposed = 0;  // m/s, the least speed but 0 of a type that is moved
@@ -35,8 +39,14 @@ struct Motion {
   //                      or moved
   //   initial rotation   (V/c)^2, V the root mean square of the rotation
   double strain = 0;
+  StrainCause cause = StrainCause::none;
   std::string strain_of;  // which of them, "the velocity imposed on 'pulled'"
 };
+
+inline constexpr double kMostStrain = 0.2;  // a crystal holds no more
+
+// Whether something holds the type's particles, moves or steers them.
+bool driven(const ParticleType& type);
 
 Motion motion_of(const Scene& scene);
 

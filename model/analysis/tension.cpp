@@ -178,25 +178,6 @@ double deviation(const std::vector<double>& values, size_t from, size_t end, dou
   return std::sqrt(sum / static_cast<double>(end - from));
 }
 
-// From grip to grip, or to the body's end where nothing holds it. m, between particles' centres
-double pulled_length(const Scene& scene, const Probe& probe) {
-  const auto along = [&](uint32_t id) { return scene.body.x[id].dot(probe.axis); };
-  double gauge = 0, count = 0;
-  for (const ParticleSet* set : {&probe.lower, &probe.upper})
-    for (const uint32_t id : set->ids) gauge += along(id), ++count;
-  gauge /= std::max(1.0, count);
-  double low = gauge, high = gauge, low_grip = -INFINITY, high_grip = INFINITY;
-  for (uint32_t id = 0; id < scene.body.size(); ++id) {
-    const double x = along(id);
-    low = std::min(low, x), high = std::max(high, x);
-    const ParticleType& type = scene.rule.types[scene.body.type[id]];
-    if (!type.pd && type.imposed == std::array<bool, 3>{}) continue;
-    if (x <= gauge) low_grip = std::max(low_grip, x);
-    if (x >= gauge) high_grip = std::min(high_grip, x);
-  }
-  return (std::isfinite(high_grip) ? high_grip : high) - (std::isfinite(low_grip) ? low_grip : low);
-}
-
 }  // namespace
 
 const Curve* find_curve(const std::vector<Curve>& curves, const std::string& name) {
@@ -225,6 +206,24 @@ std::vector<double> running_mean(const std::vector<double>& values, size_t width
 }
 
 size_t tension_window(size_t count) { return std::max<size_t>(1, count / 100) | 1; }
+
+double pulled_length(const Scene& scene, const Probe& probe) {
+  const auto along = [&](uint32_t id) { return scene.body.x[id].dot(probe.axis); };
+  double gauge = 0, count = 0;
+  for (const ParticleSet* set : {&probe.lower, &probe.upper})
+    for (const uint32_t id : set->ids) gauge += along(id), ++count;
+  gauge /= std::max(1.0, count);
+  double low = gauge, high = gauge, low_grip = -INFINITY, high_grip = INFINITY;
+  for (uint32_t id = 0; id < scene.body.size(); ++id) {
+    const double x = along(id);
+    low = std::min(low, x), high = std::max(high, x);
+    const ParticleType& type = scene.rule.types[scene.body.type[id]];
+    if (!type.pd && type.imposed == std::array<bool, 3>{}) continue;
+    if (x <= gauge) low_grip = std::max(low_grip, x);
+    if (x >= gauge) high_grip = std::min(high_grip, x);
+  }
+  return (std::isfinite(high_grip) ? high_grip : high) - (std::isfinite(low_grip) ? low_grip : low);
+}
 
 TensionTest tension_test(const Tension& curves, const Scene& scene, const Probe& probe) {
   TensionTest test{curves.strain->value, curves.stress->value, {}};

@@ -33,6 +33,9 @@ struct TensionTest {
 // `probe`: of the scene, whose curves these are. Times are steps.
 TensionTest tension_test(const Tension& curves, const Scene& scene, const Probe& probe);
 
+// m, between particles' centres: from grip to grip, or to the body's end where nothing holds it.
+double pulled_length(const Scene& scene, const Probe& probe);
+
 struct CurveFigure {
   std::optional<double> value;
   std::string why;          // there is no value

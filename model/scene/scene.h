@@ -63,6 +63,8 @@ struct Probe {
   // The masses of the set's particles over rule.mass, where they differ: factors of v^2 and of the mean.
   std::vector<double> relative;
   std::string unit;  // of temperature: K, in reduced units J; of a field
+  // What its curves in integers may be off by, over their size (model/analysis/probe_error.h); 0: not asked.
+  double accuracy = 0;
   // field: its name, which of the declaration's `shown` it is, and how many numbers it has.
   std::string field;
   size_t field_at = 0;

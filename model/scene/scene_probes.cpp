@@ -83,6 +83,16 @@ void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
   for (const uint32_t id : probe.set.ids) probe.types.push_back(scene.body.type[id]);
 }
 
+void read_accuracy(const ConfigTable& table, const Scene& scene, Probe& probe) {
+  const auto accuracy = table.find("accuracy");
+  if (!accuracy) return;
+  probe.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
+  if (probe.kind == Probe::Kind::crack)
+    accuracy->fail("a crack goes on by a spacing at a time: no accuracy is asked of it");
+  if (scene.rule.rounds != nullptr)
+    accuracy->fail("a [rule] chooses its formats by itself: accuracy is asked of probes of a [law]");
+}
+
 }  // namespace
 
 void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) {
@@ -123,6 +133,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
         for (const uint32_t id : probe.set.ids)
           probe.relative.push_back(scene.rule.relative_mass(scene.body.type[id]));
     }
+    read_accuracy(table, scene, probe);
     table.done();
     scene.probes.push_back(std::move(probe));
   }

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// The estimates of probes' errors beside what the lattice engine leaves of the curves of doubles, and formats
+// that keep what a probe asks for.
+#include "model/analysis/probe_error.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emu/lattice/run.h"
+#include "hw/engine/scene_engine.h"
+#include "hw/plan/probe_accuracy.h"
+#include "model/analysis/meter.h"
+#include "tests/support/refused_with.h"
+
+namespace cuboct {
+namespace {
+
+// E = 3 GPa; the first grip's wave goes to and fro four times.
+std::string bar(const std::string& probe = "", const std::string& run = "") {
+  return R"(density = "1.41 g/cm^3"
+[packing]
+pitch = "0.5 mm"
+axes = [[1, 1, 0], [-1, 1, 0]]
+[geometry]
+shape = "box"
+size = "[12, 2, 2] mm"
+[regions]
+left = { shape = "half_space", point = "[-5, 0, 0] mm", normal = "x" }
+right = { shape = "half_space", point = "[5, 0, 0] mm", normal = "-x" }
+lower = { shape = "box", centre = "[-2.5, 0, 0] mm", size = "[0.6, 9, 9] mm" }
+upper = { shape = "box", centre = "[2.5, 0, 0] mm", size = "[0.6, 9, 9] mm" }
+[law]
+kind = "elastic"
+youngs_modulus = "3 GPa"
+direction = "x"
+[damping]
+ratio = 0.2
+[[constraint]]
+name = "fixed"
+kind = "held"
+region = "left"
+[[constraint]]
+name = "pulled"
+kind = "moved"
+velocity = "[4, 0, 0] m/s"
+region = "right"
+[[probe]]
+name = "tension"
+kind = "stress_strain"
+axis = "x"
+lower = "lower"
+upper = "upper"
+grip = "right"
+area = "4 mm^2"
+)" + probe +
+         R"(
+[run]
+dt_safety = 0.5
+duration = "60 us"
+)" + run;
+}
+
+// Bent by a sudden weight.
+const std::string kBeam = R"(density = "1.2 g/cm^3"
+gravity = "[0, 0, -9.81] m/s^2"
+[packing]
+pitch = "2 mm"
+[geometry]
+shape = "box"
+size = "[60, 6, 6] mm"
+[law]
+kind = "elastic"
+youngs_modulus = "20 MPa"
+direction = "x"
+[[constraint]]
+name = "wall"
+kind = "held"
+region = { shape = "half_space", point = "[-25, 0, 0] mm", normal = "x" }
+[[probe]]
+name = "tip"
+kind = "displacement"
+region = { shape = "half_space", point = "[28, 0, 0] mm", normal = "-x" }
+axis = "-z"
+[run]
+dt_safety = 0.5
+duration = "10 ms"
+)";
+
+struct Compared {
+  CurveError estimate;
+  double measured = 0;
+};
+
+std::vector<double> curve_of(const std::vector<Curve>& curves, const std::string& name) {
+  for (const Curve& curve : curves)
+    if (curve.name == name) return curve.value;
+  throw std::runtime_error("no curve " + name);
+}
+
+double off_by(const std::vector<double>& fixed, const std::vector<double>& doubles, bool means) {
+  double off = 0, size = 0, sum = 0, sums = 0;
+  for (size_t k = 0; k < fixed.size(); ++k) {
+    off += std::pow(fixed[k] - doubles[k], 2), size += doubles[k] * doubles[k];
+    sum += fixed[k], sums += doubles[k];
+  }
+  return means ? std::abs(sum / sums - 1) : std::sqrt(off / size);
+}
+
+// `curves`: of the first probe's estimates, in their order.
+std::vector<Compared> compare(const Scene& scene, const std::vector<std::string>& curves) {
+  const Plan plan = plan_of(scene, {});
+  emu::LatticeRun request;
+  request.steps = request.hash_every = scene.steps;
+  request.engine.threads = 1;
+  request.probes = probe_steps_of(scene, scene.steps);
+  const Recorded run = emu::run_lattice(scene, plan, request);
+  EXPECT_FALSE(run.trace.stop);
+  const Recorded doubles = record(scene, scene_reference_kind(scene, plan, {}), request);
+  const std::vector<ProbeError> errors = probe_errors(scene, plan);
+  std::vector<Compared> compared;
+  EXPECT_EQ(errors.front().curves.size(), curves.size());
+  for (size_t k = 0; k < curves.size(); ++k)
+    compared.push_back({errors.front().curves.at(k), off_by(curve_of(run.trace.curves, curves[k]),
+                                                            curve_of(doubles.trace.curves, curves[k]),
+                                                            errors.front().curves[k].of_means)});
+  return compared;
+}
+
+// An estimate is not below what is measured, and at most ten times as much.
+void expect_estimated(const std::vector<Compared>& compared) {
+  for (const auto& [estimate, measured] : compared) {
+    EXPECT_GE(estimate.error, measured) << estimate.quantity;
+    EXPECT_LE(estimate.error, 10 * measured) << estimate.quantity;
+  }
+}
+
+TEST(ProbeError, OfABarIsEstimated) {
+  for (const char* run : {"accuracy = 1e-2", "", "accuracy = 1e-4"})
+    expect_estimated(compare(parse_scene(bar("", run), "bar.toml"), {"tension.stress", "tension.strain"}));
+}
+
+TEST(ProbeError, OfABeamIsEstimated) {
+  expect_estimated(compare(parse_scene(kBeam, "beam.toml"), {"tip.along"}));
+}
+
+TEST(ProbeError, OfAGasIsThatOfReadingsThatPart) {
+  const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/templates/gas.toml");
+  const std::vector<ProbeError> errors = probe_errors(scene, plan_of(scene, {}));
+  ASSERT_EQ(errors.front().curves.size(), 2U);
+  EXPECT_FALSE(errors.front().curves[0].of_means);
+  EXPECT_TRUE(errors.front().curves[1].of_means);
+  // 1/sqrt(3 N) of 2048 particles.
+  EXPECT_NEAR(errors.front().curves[0].error, 1 / std::sqrt(3 * 2048.0), 1e-12);
+  EXPECT_LT(errors.front().curves[1].error, errors.front().curves[0].error);
+  const std::vector<Compared> compared = compare(scene, {"gas.temperature", "gas.temperature"});
+  for (const auto& [estimate, measured] : compared) EXPECT_GE(estimate.error, measured);
+}
+
+TEST(ProbeError, AskedOfAProbeChoosesFinerFormatsThatKeepIt) {
+  const Scene plain = parse_scene(bar(), "bar.toml"),
+              asking = parse_scene(bar("accuracy = 2e-4"), "bar.toml");
+  const Plan before = plan_of(plain, {}), plan = plan_of(asking, {});
+  EXPECT_GT(plan.rule.widths.strength_bits, before.rule.widths.strength_bits);
+  EXPECT_GT(plan.rule.widths.difference_frac, before.rule.widths.difference_frac);
+  EXPECT_GT(probe_errors(plain, before).front().curves.front().error, 2e-4);
+  for (const auto& [estimate, measured] : compare(asking, {"tension.stress", "tension.strain"})) {
+    EXPECT_LE(estimate.error, 2e-4) << estimate.quantity;
+    EXPECT_LE(measured, 2e-4) << estimate.quantity;
+    EXPECT_GT(measured, 0) << estimate.quantity;
+  }
+  const auto reason = [&](const std::string& key) {
+    return std::ranges::find_if(plan.reasons, [&](const WidthReason& r) { return r.key == key; })->why;
+  };
+  EXPECT_EQ(reason("strength_bits"), "by the accuracy of probe 'tension'");
+  EXPECT_TRUE(reason("difference_frac").ends_with(", by the accuracy of probe 'tension'"))
+      << reason("difference_frac");
+}
+
+TEST(ProbeError, AnAccuracyThatIsKeptChangesNothing) {
+  EXPECT_EQ(plan_of(parse_scene(bar("accuracy = 0.05"), "bar.toml"), {}).hash,
+            plan_of(parse_scene(bar(), "bar.toml"), {}).hash);
+}
+
+TEST(ProbeError, RefusesWhatNoFormatsKeep) {
+  const std::string best = refused_with([] { plan_of(parse_scene(bar("accuracy = 1e-6"), "bar.toml"), {}); });
+  EXPECT_EQ(
+      best,
+      "bar.toml:36:12: the stress of probe 'tension' cannot be had within 1e-06: the best that formats do "
+      "is about 2.2e-05\n  hint: accuracy = 2.3e-05, or doubles (--engine reference)");
+  // Doubles run it.
+  EXPECT_GT(scene_plan_of(parse_scene(bar("accuracy = 1e-6"), "bar.toml"), {}, "reference", true).particles,
+            0U);
+}
+
+TEST(ProbeError, RefusesWhatItDoesNotEstimate) {
+  const std::string held = R"(
+[[probe]]
+name = "grip"
+kind = "displacement"
+region = "left"
+accuracy = 0.001
+)";
+  EXPECT_EQ(refused_with([&] { plan_of(parse_scene(bar(held), "bar.toml"), {}); }),
+            "bar.toml:41:12: no accuracy can be asked of probe 'grip': its particles are held");
+  const std::string crack = R"(
+[[probe]]
+name = "crack"
+kind = "crack"
+region = "left"
+axis = "x"
+accuracy = 0.001
+)";
+  EXPECT_EQ(refused_with([&] { parse_scene(bar(crack), "bar.toml"); }),
+            "bar.toml:42:12: a crack goes on by a spacing at a time: no accuracy is asked of it");
+}
+
+}  // namespace
+}  // namespace cuboct
