@@ -247,7 +247,12 @@ class Estimate {
     const double unit = std::ldexp(fixed_.cell_edge, -fixed_.widths.velocity_frac() - 1) / scene_.rule.dt;
     // Alone, a body strains about a motion that is exact.
     double blow = force_ * strained / speed;
-    if (others) blow = breaks_ ? force_ : force_ / std::sqrt(sections_);
+    if (others) {
+      // Of two alike that meet each is strained by half of what their speed makes.
+      const double met = std::max(bond_.strain, start / (2 * motion_.sound_speed));
+      error.until_breaks = bond_.peak_strain > 0 && kConcentration * met >= bond_.peak_strain;
+      blow = error.until_breaks ? force_ : force_ / std::sqrt(sections_);
+    }
     const double flight = (unit + loads_ * fall) / speed;
     error.curves = {{quantity, power * (blow + flight)}};
     error.why = flight > blow ? "the rounding of velocities" : part();

@@ -120,6 +120,7 @@ class Scene(_Tables):
         the start; `cell_edges` along x, y and z in m, and `cell_edge`, the longest; `nodes` of the machine (`cells`, `cells_with_matter` and
         `nodes` are None of a rule with rounds of its own, for which no machine is built; `nodes` of cells that are no cubes, too);
         `plan_hash`; `reach`, what [reach] margin = "auto" tells, else None; `warnings`;
+        `probes`, by name: `errors` that integers leave, a list of `quantity`, `error`, `unit` ("1": a share of the curve) and `of_means`, and a `text`;
         `engine`, which runs it where none is named; `stages`, their names.
         """
         with sources(self, arch) as source:

@@ -82,6 +82,7 @@ TEST(Check, TellsPhysics) {
   EXPECT_EQ(answer.err, "");
   EXPECT_TRUE(std::regex_match(
       answer.out,
+<<<<<<< HEAD
       std::regex(
           "scene    scenes/sheet.toml\n"
           "title    Notched sheet of one layer, torn\n"
@@ -100,10 +101,60 @@ TEST(Check, TellsPhysics) {
           "[0-9.]+ steps\n"
           "disk     [0-9.]+ MB with --out, 2 frames\n"
           "machine  [0-9]+ nodes; --machine tells formats, records and cycles\n")))
+=======
+      std::regex("scene       scenes/sheet.toml\n"
+                 "title       Notched sheet of one layer, torn\n"
+                 "body        30 mm x 19.9 mm, 2818 particles of 125 ug, 500 um apart\n"
+                 "waves       1.42 km/s, 21.2 us from end to end\n"
+                 "run         6226 steps of 48.2 ns = 300 us, 14.2 crossings\n"
+                 "step        0.2 of 241 ns, the largest stable one of the perfect packing\n"
+                 "strain      about 10 %, by the velocity imposed on 'matter/pulled'\n"
+                 "work        17.5 million particle-steps, about [0-9.]+ s on [0-9]+ threads?, [0-9.]+ MB of "
+                 "memory\n"
+                 "probes      one every 50 steps, (about [0-9]+|less than 1) % of the processor time\n"
+                 "energy      one every 200 steps, (about [0-9]+|less than 1) % of the processor time: one "
+                 "costs about "
+                 "[0-9.]+ steps\n"
+                 "probe pull  force within about 0.14 % until bonds break; the force table at 10 % strain\n"
+                 "disk        [0-9.]+ MB with --out, 2 frames\n"
+                 "machine     [0-9]+ nodes; --machine tells formats, records and cycles\n")))
+>>>>>>> 349beee7 (Estimates of a blow that may break bonds; docs of what a probe is off by)
       << answer.out;
   // A box that repeats, of plain numbers.
   const std::string gas = Bench(false).cuboct({"check", "scenes/lj_block.toml"}).out;
   EXPECT_NE(gas.find("repeats along xyz, 256 particles of mass 1, 1.11 apart\n"), std::string::npos) << gas;
+}
+
+// With numbers for scripts, and the formats' reasons where a probe asks for its accuracy.
+TEST(Check, TellsWhatProbesAreOffBy) {
+  const Bench bench(false);
+  const std::string path = bench.path("bar.toml");
+  ASSERT_EQ(bench.cuboct({"new", path, "--like", "tension"}).code, 0);
+  std::string text = contents(path);
+  const auto with = [&](const std::string& accuracy) {
+    std::string changed = text;
+    changed.insert(changed.find("area = "), "accuracy = " + accuracy + "\n");
+    std::ofstream(path) << changed;
+  };
+  EXPECT_NE(
+      bench.cuboct({"check", path, "--json"})
+          .out.find(
+              "  \"probe_tension\": {\"value\": \"stress within about 0.2 %, strain 0.049 % until bonds "
+              "break; the force table at 7.5 % strain\", \"errors\": [{\"quantity\": \"stress\", "
+              "\"error\": 0.0019"),
+      std::string::npos);
+  with("0.001");
+  const std::string machine = bench.cuboct({"check", path, "--machine"}).out;
+  EXPECT_NE(machine.find("strength bits                    20 (by the accuracy of probe 'tension')\n"),
+            std::string::npos)
+      << machine;
+  with("1e-6");
+  const Answer refused = bench.cuboct({"check", path});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(
+      refused.err.find("the stress of probe 'tension' cannot be had within 1e-06: the best that formats do"),
+      std::string::npos)
+      << refused.err;
 }
 
 // The bar of the template, whose waves travel at 1.46 km/s: `check`, the run and its report say it.

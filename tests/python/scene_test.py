@@ -65,6 +65,16 @@ class Scenes(unittest.TestCase):
         other["packing"]["pitch"] = scene["packing"]["pitch"]
         self.assertEqual(other.toml(), scene.toml())
 
+    def test_probes_tell_what_they_are_off_by(self):
+        scene = cuboct.Scene.like("tension")
+        told = scene.check()["probes"]["tension"]
+        stress, strain = told["errors"]
+        self.assertEqual([stress["quantity"], stress["unit"], strain["quantity"]], ["stress", "1", "strain"])
+        self.assertFalse(stress["of_means"])
+        self.assertIn(f"stress within about {100 * stress['error']:.2g} %", told["text"])
+        scene["probe"][0]["accuracy"] = stress["error"] / 3
+        self.assertLessEqual(scene.check()["probes"]["tension"]["errors"][0]["error"], stress["error"] / 3)
+
     def test_the_command_reads_what_is_saved(self):
         scene = cuboct.Scene.like("tension")
         scene["packing"]["pitch"] = "1 mm"
