@@ -20,6 +20,7 @@ constexpr std::array kEntries{
     Entry{"run it", "run", "cuboct run scenes/coupon.toml --steps 400 --out out/coupon"},
     Entry{"run it", "curves", "cuboct curves out/coupon --out coupon.csv"},
     Entry{"run it", "measure", "cuboct measure out/melt rdf --out rdf.csv"},
+    Entry{"run it", "state", "cuboct state out/coupon --out coupon.xyz"},
     Entry{"run it", "picture", "cuboct picture out/coupon --field speed"},
     Entry{"run it", "report", "cuboct report out/coupon"},
     Entry{"compare", "crosscheck", "cuboct crosscheck scenes/lj_block.toml --engines golden,lattice"},

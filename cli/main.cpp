@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   constexpr OwnCommand kOwn[] = {{"new", add_new},         {"check", add_check},
                                  {"run", add_run},         {"crosscheck", add_crosscheck},
                                  {"curves", add_curves},   {"measure", add_measure},
-                                 {"picture", add_picture}, {"report", add_report}};
+                                 {"picture", add_picture}, {"report", add_report},
+                                 {"state", add_state}};
   return front(argc, argv, kOwn);
 }

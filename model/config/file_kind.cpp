@@ -62,7 +62,7 @@ const std::vector<Row>& kinds() {
       {FileKind::scene,
        "a scene",
        "'cuboct run {}' takes it",
-       {{"law", "rule", "packing", "crystal", "particle"}},
+       {{"law", "rule", "packing", "crystal", "particle", "particles"}},
        {"round"}},
       {FileKind::arch,
        "an arch file",

@@ -19,6 +19,7 @@
 #include "model/scene/readings.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
+#include "model/solid/stiffest_parts.h"
 #include "model/solid/vibrations.h"
 
 namespace cuboct {
@@ -83,7 +84,8 @@ class DampingAsLaw final : public PairLaw {
   const Rule& rule_;
 };
 
-// The limit of the body's own vibrations, or of its part [low, high]; infinite where nothing is restored.
+// The limit of the body's own vibrations, or of its part [low, high]; infinite where nothing is restored. Of
+// many particles that of parts.
 double vibrations_limit(const Scene& scene, const Vec3& low, const Vec3& high) {
   Body part;
   for (size_t i = 0; i < scene.body.size(); ++i) {
@@ -92,6 +94,8 @@ double vibrations_limit(const Scene& scene, const Vec3& low, const Vec3& high) {
     part.x.push_back(x);
     part.type.push_back(scene.body.type[i]);
   }
+  constexpr size_t kMostAtOnce = 10000;  // a second
+  if (part.size() > kMostAtOnce) return stiffest_parts_limit(scene.rule, part, scene.periodic);
   return stability_limit(vibrations_of(scene.rule, part, scene.periodic)).dt;
 }
 
@@ -156,12 +160,12 @@ void read_length(const ConfigTable& table, Scene& scene) {
   }
 }
 
-// A stage's keys replace those of [run].
-void read_time(const ConfigTable& root, const StagePart* stage, Scene& scene) {
+// A stage's keys replace those of [run]. `listed`: as read_body has it.
+void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, Scene& scene) {
   const auto found = root.table_at("run");
   if (!found) root.at("run");
   const ConfigTable& run = *found;
-  const TimeLimits limits = time_limits(scene, root.tables("particle").size());
+  const TimeLimits limits = time_limits(scene, listed);
   const auto usual = run.find("dt"), own = stage ? stage->find("dt") : std::nullopt;
   const auto dt = own ? own : usual;
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
@@ -334,12 +338,12 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   read_damping(root, scene);
   if (stage) read_damping(*stage, scene);
   const Regions regions(root);
-  read_body(root, stage, regions, packed, grown, scene);
+  const size_t listed = read_body(root, stage, regions, packed, grown, scene);
   if (stage) stage->check_ramps();
   if (rounds) scene.rule.rounds = rule->make(root, regions, scene);
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
-  read_time(root, stage, scene);
+  read_time(root, stage, listed, scene);
   if (scene.loading) check_static_rule(root, scene.rule);
   read_reach(root, scene);
   for (Probe& probe : scene.probes)

@@ -13,6 +13,7 @@
 #include "model/base/spelling.h"
 #include "model/config/name.h"
 #include "model/contract/law.h"
+#include "model/scene/scene_particles.h"
 #include "model/scene/scene_parts.h"
 #include "model/scene/symmetry.h"
 
@@ -146,8 +147,8 @@ void pack_geometry(const ConfigTable& root, const Regions& regions, const Packin
   scene.body.v.assign(scene.body.x.size(), Vec3::Zero());
 }
 
-void read_single_box(const ConfigTable& root, Scene& scene) {
-  const auto [boxed, periodic] = read_box(root, nullptr);
+void read_single_box(const ConfigTable& root, const FileParticles* file, Scene& scene) {
+  const auto [boxed, periodic] = read_box(root, nullptr, file && file->file.box ? &*file->file.box : nullptr);
   scene.periodic.origin = boxed.origin;
   for (size_t a = 0; a < 3; ++a)
     if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
@@ -168,10 +169,9 @@ class Fastest {
   std::optional<ConfigValue> key_;
 };
 
-// The materials named by the [[particle]] entries, the last of all particles; -1: by region.
-std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::string>& materials,
-                                Scene& scene, Fastest& fastest) {
-  std::vector<int> named;
+// Adds the materials named by the [[particle]] entries, the last of all particles; -1: by region.
+void read_particles(const ConfigTable& root, const std::vector<std::string>& materials, Scene& scene,
+                    Fastest& fastest, std::vector<int>& named) {
   const auto tables = root.tables("particle");
   scene.body.x.reserve(scene.body.x.size() + tables.size());  // behind millions: no growth by halves
   scene.body.v.reserve(scene.body.v.size() + tables.size());
@@ -190,12 +190,12 @@ std::vector<int> read_particles(const ConfigTable& root, const std::vector<std::
     named.push_back(material ? static_cast<int>(material->choice("material", materials)) : -1);
     table.done();
   }
-  return named;
 }
 
 // Sites of a packing are a pitch apart: only the listed particles, the last of `x`, can stand where another
-// does.
-void check_distinct(const ConfigTable& root, const std::vector<Vec3>& x, size_t listed) {
+// does. `refuse` has the message about two of them.
+template <typename Refuse>
+void check_distinct(const std::vector<Vec3>& x, size_t listed, Refuse refuse) {
   const auto key = [&](size_t i) { return std::array{x[i][0], x[i][1], x[i][2], static_cast<double>(i)}; };
   std::vector<size_t> order(listed);
   std::iota(order.begin(), order.end(), x.size() - listed);
@@ -209,7 +209,8 @@ void check_distinct(const ConfigTable& root, const std::vector<Vec3>& x, size_t 
   std::ranges::sort(order, {}, key);
   for (size_t i = 1; i < order.size(); ++i)
     if (x[order[i]] == x[order[i - 1]])
-      root.fail(fmt::format("particles {} and {} stand at the same point", order[i - 1], order[i]));
+      refuse(order[i - 1], order[i],
+             fmt::format("particles {} and {} stand at the same point", order[i - 1], order[i]));
 }
 
 struct Material {
@@ -501,13 +502,15 @@ void read_velocities(const ConfigTable& root, const Regions& regions, const std:
 
 }  // namespace
 
-std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites) {
+std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites,
+                                                  const ParticleFileBox* file) {
   Periodic box;
   std::array<bool, 3> periodic{};
+  if (file != nullptr) box.origin = file->low, box.extent = file->extent, periodic = file->periodic;
   const auto table = root.table_at("box");
   if (!table) return {box, periodic};
   if (table->has("periodic")) periodic = table->axes("periodic");
-  box.origin = table->vector_or("origin", quantity::length, Vec3::Zero());
+  box.origin = table->vector_or("origin", quantity::length, box.origin);
   table->not_both("cells", "size");
   if (sites != nullptr && table->has("cells")) {
     const ConfigValue cells = table->at("cells");
@@ -517,7 +520,7 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
         cells.fail("'cells' must hold three whole numbers of at least 1");
       box.extent[a] = n[a] * sites->edge(a, cells);
     }
-  } else {
+  } else if (file == nullptr || table->has("size") || table->has("cells")) {
     const ConfigValue size = table->at("size");
     box.extent = size.vector(quantity::length);
     if (!(box.extent.minCoeff() > 0)) size.fail("'size' must be greater than 0 along each axis");
@@ -525,30 +528,56 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
       if (sites != nullptr && periodic[a] && !sites->repeats(a, box.extent[a]))
         size.fail(fmt::format("the packing does not repeat after {:.9g} m along {}", box.extent[a], "xyz"[a]),
                   "give 'cells' instead");
+    if (file != nullptr) check_box_size(size, *file, box.extent, periodic);
   }
+  for (size_t a = 0; a < 3; ++a)
+    if (periodic[a] && !(box.extent[a] > 0))
+      table->at("periodic").fail(fmt::format("the particles' file has no length of the box along {}", "xyz"[a]));
   table->done();
   return {box, periodic};
 }
 
-void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
-               const PackingChoice* packing, const CrystalChoice* crystal, Scene& scene) {
+size_t read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
+                 const PackingChoice* packing, const CrystalChoice* crystal, Scene& scene) {
   const std::vector<Material> materials = read_materials(root);
   std::vector<std::string> names;
   for (const Material& material : materials) names.push_back(material.name);
   read_bonds(root, materials, names, packing, scene.rule);
 
+  const auto filed = read_file_particles(root, packing != nullptr || crystal != nullptr, names);
   if (packing != nullptr)
     pack_geometry(root, regions, *packing, scene);
   else if (crystal != nullptr)
     place_crystal(root, regions, *crystal, scene);
   else
-    read_single_box(root, scene);
-  Fastest fastest;
-  const std::vector<int> named = read_particles(root, names, scene, fastest);
+    read_single_box(root, filed ? &*filed : nullptr, scene);
   Body& body = scene.body;
-  if (body.size() == 0) root.fail("no particle", "add [packing] with [geometry], or [[particle]]");
-  check_distinct(root, body.x, named.size());
+  const size_t packed = body.size();
+  std::vector<int> named;  // of those that are listed
+  if (filed) {
+    place_file_particles(*filed, scene);
+    for (size_t i = 0; i < filed->file.size(); ++i) named.push_back(filed->material_of(i));
+  }
+  Fastest fastest;
+  read_particles(root, names, scene, fastest, named);
+  if (body.size() == 0)
+    root.fail("no particle", "add [packing] with [geometry], [particles] or [[particle]]");
+  check_distinct(body.x, named.size(), [&](size_t i, size_t j, const std::string& message) {
+    const ParticleFile* file = filed ? &filed->file : nullptr;
+    for (const size_t of : {j, i})
+      if (file != nullptr && of >= packed && of - packed < file->size())
+        file->text->fail(
+            file->at[of - packed], message,
+            i >= packed && i - packed < file->size() && of == j
+                ? fmt::format("the other one is that of line {}", file->text->line_at(file->at[i - packed]))
+                : "");
+    root.fail(message);
+  });
   std::vector<int> material = assign_materials(root, regions, named, scene);
+  if (filed) {
+    check_file_masses(*filed, material, packed, scene, names);
+    take_momenta(*filed, material, packed, scene);
+  }
   const std::vector<SymmetryPlane> planes = read_symmetry(root, packing, scene);
   Divided divided;
   if (!planes.empty()) divided = divide(planes, body.x, tolerance_of(scene), material, names, scene.rule);
@@ -584,6 +613,12 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
   std::vector<char> free(body.size());
   for (size_t i = 0; i < body.size(); ++i)
     free[i] = constraint[i] < 0 || moves_freely(constraints[static_cast<size_t>(constraint[i])]);
+  if (filed) {
+    double speed = 0;
+    for (size_t i = packed; i < packed + filed->file.size(); ++i)
+      if (free[i] != 0) speed = std::max(speed, body.v[i].norm());
+    if (speed > 0) fastest.meet(filed->table.at("file"), speed);
+  }
   read_velocities(root, regions, material, free, planes.empty() ? scene.rule : divided.whole, scene, fastest);
   fastest.mark(scene.places);
 
@@ -617,9 +652,10 @@ void read_body(const ConfigTable& root, const StagePart* stage, const Regions& r
       if (type.imposed[a]) body.v[i][a] = type.velocity[a];
   }
   if (pd) body.u.assign(body.size(), Vec3::Zero());
-  if (planes.empty()) return;
+  if (planes.empty()) return named.size();
   divided.whole.types = scene.rule.types;
   scene.whole = std::make_shared<const Rule>(std::move(divided.whole));
+  return named.size();
 }
 
 }  // namespace cuboct

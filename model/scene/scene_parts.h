@@ -22,7 +22,8 @@
 
 namespace cuboct {
 
-class RoundsRule;  // model/rules/rounds_rule.h
+class RoundsRule;        // model/rules/rounds_rule.h
+struct ParticleFileBox;  // model/body/particle_file.h
 
 struct GrainChoice {
   Grains grains;
@@ -142,14 +143,18 @@ struct SitePeriods {
 };
 // The box of [periodic] or `cells`; the second marks the axes that repeat. `sites`: null where all particles
 // are listed.
-std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites);
+// `file`: that of a file of particles, from which `size`, `origin` and `periodic` come where they are not
+// given.
+std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites,
+                                                  const ParticleFileBox* file = nullptr);
 
-// Everything that gives particles: positions and velocities ([packing], [crystal], [geometry], [[particle]],
-// [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and .strength, and with
-// planes of symmetry scene.whole. scene.rule needs law, damping and mass. `stage`: whose keys replace those
-// of the root.
-void read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
-               const PackingChoice* packing, const CrystalChoice* crystal, Scene& scene);
+// Everything that gives particles: positions and velocities ([packing], [crystal], [geometry], [particles],
+// [[particle]], [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and
+// .strength, and with planes of symmetry scene.whole. scene.rule needs law, damping and mass. `stage`: whose
+// keys replace those of the root. How many particles are listed, the last of all: those of [particles] and
+// [[particle]].
+size_t read_body(const ConfigTable& root, const StagePart* stage, const Regions& regions,
+                 const PackingChoice* packing, const CrystalChoice* crystal, Scene& scene);
 
 // The largest stable time step of the perfect packing in s, 0 if unknown. With all frequencies up to w and
 // all damping rates up to g (rates of the matrices K/m and C/m) the update v += -dt (K/m x + C/m v), x += dt

@@ -86,13 +86,15 @@ void write_lines(FrameText& file, fmt::memory_buffer& out, size_t count, Line li
   file.commit();
 }
 
-// The field's numbers of a particle, each behind a blank.
+// The field's numbers of a particle, each behind a blank. `exact`: as many digits as give it back.
 template <typename Out>
-void write_numbers(Out to, const FrameField& field, const Frame& frame, size_t i) {
+void write_numbers(Out to, const FrameField& field, const Frame& frame, size_t i, bool exact = false) {
   for (size_t c = 0; c < field.numbers(); ++c) {
     const double value = field.value(frame, i, c);
     if (field.whole)
       fmt::format_to(to, FMT_COMPILE(" {}"), static_cast<uint64_t>(value));
+    else if (exact)
+      fmt::format_to(to, FMT_COMPILE(" {}"), value);
     else
       fmt::format_to(to, FMT_COMPILE(" {:.6g}"), value);
   }
@@ -130,7 +132,8 @@ void convert_to_ase(std::vector<FrameField>& fields, const std::vector<FrameType
 }  // namespace
 
 XyzWriter::XyzWriter(const std::string& path, const FrameStyle& style, const XyzForm& form)
-    : style_(style), fields_(frame_fields(style)), file_(path, form.packed) {
+    : style_(style), fields_(frame_fields(style)), exact_(form.exact), file_(path, form.packed) {
+  if (form.exact) std::erase_if(fields_, [](const FrameField& field) { return field.name != "velocity"; });
   if (form.ase) {
     length_ = 1 / si("angstrom");
     convert_to_ase(fields_, style.types);
@@ -159,16 +162,23 @@ void XyzWriter::add(const Frame& frame) {
   const auto flag = [&](int axis) { return style_.periodic.extent[axis] > 0 ? 'T' : 'F'; };
   const Vec3 extent = length_ * box.extent, lower = length_ * box.lower;
   fmt::memory_buffer out;
+  const auto three = [&](const Vec3& v, const char* between) {
+    return exact_ ? fmt::format("{}{}{}{}{}", v[0], between, v[1], between, v[2])
+                  : fmt::format("{:.9g}{}{:.9g}{}{:.9g}", v[0], between, v[1], between, v[2]);
+  };
   fmt::format_to(std::back_inserter(out),
-                 "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"{:.9g} {:.9g} {:.9g}\" "
-                 "pbc=\"{} {} {}\" {} Step={} Time={:.9g}\n",
-                 frame.x.size(), extent[0], extent[1], extent[2], lower[0], lower[1], lower[2], flag(0),
-                 flag(1), flag(2), head_, frame.step, frame.time);
+                 "{}\nLattice=\"{}\" Origin=\"{}\" pbc=\"{} {} {}\" {} Step={} Time={:.9g}\n", frame.x.size(),
+                 three(extent, " 0 0 0 "), three(lower, " "), flag(0), flag(1), flag(2), head_, frame.step,
+                 frame.time);
   write_lines(file_, out, frame.x.size(), [&](auto to, size_t i) {
     const Vec3 x = length_ * frame.x[i];
-    fmt::format_to(to, FMT_COMPILE("{} {:.9g} {:.9g} {:.9g} {} {}"), species_[frame.type[i]], x[0], x[1],
-                   x[2], i, words_[frame.type[i]]);
-    for (const FrameField& field : fields_) write_numbers(to, field, frame, i);
+    if (exact_)
+      fmt::format_to(to, FMT_COMPILE("{} {} {} {} {} {}"), species_[frame.type[i]], x[0], x[1], x[2], i,
+                     words_[frame.type[i]]);
+    else
+      fmt::format_to(to, FMT_COMPILE("{} {:.9g} {:.9g} {:.9g} {} {}"), species_[frame.type[i]], x[0], x[1],
+                     x[2], i, words_[frame.type[i]]);
+    for (const FrameField& field : fields_) write_numbers(to, field, frame, i, exact_);
     *to++ = '\n';
   });
 }

@@ -31,6 +31,8 @@ struct XyzForm {
   bool packed = false;
   // In ASE's units: angstrom, u, and momenta in sqrt(u eV) in the place of velocities. Not of reduced units.
   bool ase = false;
+  // All digits of positions, velocities and box, and of the fields velocity alone: a state to begin with.
+  bool exact = false;
 };
 
 // All frames in one file, one after another. `Properties` names the columns, `units` their units.
@@ -46,6 +48,7 @@ class XyzWriter {
   std::vector<std::string> species_, words_;  // by type: the first column, and those that do not change
   std::string head_;                          // Properties and units
   double length_ = 1;                         // of the file's unit in a metre
+  bool exact_;
   FrameText file_;
 };
 

@@ -17,6 +17,7 @@ import shutil as _shutil
 from . import _cuboct
 from ._errors import InputError, RunError
 from ._measure import Measured, measure
+from ._particles import write_particles
 from ._run import Comparison, Frame, Run, crosscheck, explore, run
 from ._scene import Arch, Scene
 from ._simulation import Simulation
@@ -24,7 +25,7 @@ from ._simulation import Simulation
 __version__: str = _cuboct.version
 __all__ = [
     "Arch", "Comparison", "Frame", "InputError", "Measured", "Run", "RunError", "Scene", "Simulation", "crosscheck", "explore", "measure",
-    "run", "set_program_directory",
+    "run", "set_program_directory", "write_particles",
 ]  # fmt: skip
 
 

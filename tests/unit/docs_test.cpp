@@ -166,6 +166,16 @@ std::set<std::string> scene_keys() {
                          "box = { cells = [2, 2, 2] }\n[rule]\nkind = \"tersoff\"\npotential = \"si_1989\"\n"
                          "[run]\nsteps = 1\n";
   read_scene(path.string());
+  const std::string file = path.string() + ".xyz";
+  std::ofstream(file)
+      << "1\nLattice=\"9 0 0 0 9 0 0 0 9\" Properties=species:S:1:pos:R:3:velo:R:3\nAr 1 1 1 0 0 0\n";
+  std::ofstream(path)
+      << reduced << "[law]\nkind = \"spline\"\n"
+      << lengths << "[particles]\nfile = \"" << file
+      << "\"\nunits = { length = 1, velocity = 1 }\nmaterials = { Ar = \"matter\" }\nframe = 0\n"
+      << run;
+  read_scene(path.string());
+  std::filesystem::remove(file);
   std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;

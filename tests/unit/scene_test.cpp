@@ -146,7 +146,7 @@ TEST_F(SceneTest, ErrorsWordForWord) {
             "a.toml:4:1: no particle: no site of the packing lies inside");
   EXPECT_EQ(
       error("mass = \"1 g\"\n[law]\nkind = \"lj\"\nepsilon = \"1 J\"\nsigma = \"1 mm\"\ncutoff = \"2 mm\"\n"),
-      "a.toml:1:1: no particle\n  hint: add [packing] with [geometry], or [[particle]]");
+      "a.toml:1:1: no particle\n  hint: add [packing] with [geometry], [particles] or [[particle]]");
   EXPECT_EQ(error(with("dt = \"auto\"", "dt = \"1 ms\"")).substr(0, 53),
             "a.toml:12:6: 'dt' is beyond the stability limit 2.496");
   EXPECT_EQ(error(with("steps = 10", "dt_safety = 1.5\nsteps = 10")),

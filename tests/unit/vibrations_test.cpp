@@ -11,6 +11,7 @@
 #include "model/contract/law.h"
 #include "model/real/reference.h"
 #include "model/solid/dynamical_matrix.h"
+#include "model/solid/stiffest_parts.h"
 #include "model/solid/vibrations.h"
 #include "tests/fcc_block.h"
 
@@ -157,6 +158,41 @@ TEST(Vibrations, ABodyThatBucklesIsUnstable) {
   EXPECT_NEAR(limit.softest, -2 * f / 0.9 / rule.mass, 1e-9);
   body.x = {Vec3(0, 0, 0), Vec3(1.05, 0, 0), Vec3(2.1, 0, 0)};
   EXPECT_FALSE(stability_limit(vibrations(rule, body)).body_unstable());
+}
+
+// A crystal that shakes, in a box: parts find the limit of all to some per cent, and where one pair is
+// pressed together the limit of that pair. Bounds of the rows are above the largest eigenvalue.
+TEST(StiffestParts, HaveTheLimitOfTheWhole) {
+  Rule rule;
+  rule.law = lennard_jones(1, 1, 1.6, 0.8);
+  rule.mass = 1;
+  rule.types.resize(1);
+  rule.strength = {{1}};
+  constexpr int kCells = 7;  // 1372 particles
+  const double edge = 1.55;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> shake(-0.05, 0.05);
+  Body body;
+  for (int k = 0; k < 4 * kCells * kCells * kCells; ++k) {
+    const Vec3 cell(k / 4 % kCells, k / 4 / kCells % kCells, k / 4 / kCells / kCells);
+    const Vec3 site =
+        k % 4 == 0 ? Vec3(0, 0, 0) : Vec3(k % 4 == 1 ? 0 : 0.5, k % 4 == 2 ? 0 : 0.5, k % 4 == 3 ? 0 : 0.5);
+    body.x.push_back(edge * (cell + site) + Vec3(shake(random), shake(random), shake(random)));
+  }
+  body.v.assign(body.size(), Vec3::Zero());
+  body.type.assign(body.size(), 0);
+  const Periodic box{Vec3::Constant(kCells * edge), Vec3::Zero()};
+  for (const bool pressed : {false, true}) {
+    if (pressed) body.x[900] = body.x[901] + 0.9 * (body.x[900] - body.x[901]).normalized();
+    const Limit whole = stability_limit(vibrations_of(rule, body, box));
+    const std::vector<double> bounds = stiffness_bounds(rule, body, box);
+    const double highest = *std::max_element(bounds.begin(), bounds.end());
+    EXPECT_GT(highest, whole.frequency * whole.frequency);
+    EXPECT_LT(highest, 3 * whole.frequency * whole.frequency);
+    const double parts = stiffest_parts_limit(rule, body, box, 200);
+    EXPECT_GT(parts, whole.dt * (1 - 1e-4));
+    EXPECT_LT(parts, whole.dt * (pressed ? 1.001 : 1.06));
+  }
 }
 
 }  // namespace
