@@ -4,9 +4,7 @@
 
 #include "emu/board/session.h"
 #include "emu/machine/collector.h"
-#include "emu/machine/loop_bench.h"
 #include "emu/machine/words.h"
-#include "emu/systemc/node.h"
 #include "hw/rtl/board.h"
 #include "tests/board/simulated_board.h"
 
@@ -19,26 +17,6 @@ std::vector<uint64_t> up_to(uint64_t steps) {
   std::vector<uint64_t> all;
   for (uint64_t k = 0; k <= steps; ++k) all.push_back(k);
   return all;
-}
-
-// From the first cycle of EXCHANGE_X to the last of DUMP, as docs/reference/board.md says, by the native
-// nodes.
-uint64_t cycles_of(const cuboct::Setup& setup, uint64_t steps) {
-  emu::RunOptions options;
-  options.steps = steps;
-  options.frames = {steps};
-  const Trace trace =
-      emu::run_loop_bench(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
-  std::vector<uint64_t> dumped(trace.nodes);
-  for (const Particle& p : trace.frames.back().particles) ++dumped[p.cell];
-  uint64_t last = 0;
-  for (uint64_t n = 0; n < trace.nodes; ++n) {
-    const size_t row = ((steps - 1) * trace.nodes + n) * kPhases;
-    uint64_t end = 0;
-    for (int p = 0; p < kPhases; ++p) end = std::max(end, trace.cycles[row + static_cast<size_t>(p)].end);
-    last = std::max(last, end + 1 + std::max<uint64_t>(1, dumped[n]));
-  }
-  return last;
 }
 
 TEST(Board, HoldsGoldensBitsAndTheModelsCycles) {

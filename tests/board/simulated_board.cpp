@@ -2,11 +2,15 @@
 #include "tests/board/simulated_board.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
+#include "emu/machine/loop_bench.h"
+#include "emu/systemc/node.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/contract/golden.h"
 #include "model/trace/compare.h"
@@ -52,9 +56,8 @@ Answer command(const std::vector<std::string>& arguments) {
   return {code, contents(streams.out), contents(streams.err)};
 }
 
-SimulatedBoard::SimulatedBoard(const std::vector<std::string>& options, const std::string& arch,
-                               const BoardChoice& board) {
-  const Setup setup = board_setup("grips.toml", arch);
+SimulatedBoard::SimulatedBoard(const Setup& setup, const BoardChoice& board,
+                               const std::vector<std::string>& options) {
   const std::string project = scratch_.path("project"), out = scratch_.path("out");
   emit_rtl(setup.plan, setup.initial, project, {.board = board});
   std::vector<std::string> arguments{project, "--build-dir", CUBOCT_TEST_CACHE};
@@ -77,11 +80,33 @@ std::string SimulatedBoard::end() {
   return contents(scratch_.path("err"));
 }
 
+uint64_t cycles_of(const Setup& setup, uint64_t steps) {
+  emu::RunOptions options;
+  options.steps = steps;
+  options.frames = {steps};
+  const Trace trace =
+      emu::run_loop_bench(setup.plan, setup.initial, options, emu::native_nodes(setup.plan), "plain").trace;
+  std::vector<uint64_t> dumped(trace.nodes);
+  for (const Particle& p : trace.frames.back().particles) ++dumped[p.cell];
+  const size_t phases = static_cast<size_t>(phases_of(trace.rounds));
+  uint64_t last = 0;
+  for (uint64_t n = 0; n < trace.nodes; ++n) {
+    uint64_t end = 0;
+    for (size_t p = 0; p < phases; ++p)
+      end = std::max(end, trace.cycles[((steps - 1) * trace.nodes + n) * phases + p].end);
+    last = std::max(last, end + 1 + std::max<uint64_t>(1, dumped[n]));
+  }
+  return last;
+}
+
 Trace golden_trace(const Setup& setup, uint64_t steps) {
   Trace trace;
   trace.plan_hash = setup.plan.hash;
   trace.nodes = setup.plan.nodes();
-  Golden golden(setup.plan.rule, setup.plan.lattice, setup.plan.arch.capacity, setup.initial);
+  const Plan& plan = setup.plan;
+  Golden golden = plan.program ? Golden(plan.program->program, plan.lattice, plan.arch.capacity, setup.initial,
+                                        plan.program->rows)
+                               : Golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
   try {
     for (uint64_t step = 0;; ++step) {
       trace.frames.push_back(golden.state());

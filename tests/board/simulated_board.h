@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// cuboct-board-sim on the project of scenes/boards/grips.toml, and what tests ask of it.
+// cuboct-board-sim on the project of a scene, scenes/boards/grips.toml unless said, and what tests ask of it.
 #pragma once
 
 #include <memory>
@@ -34,7 +34,10 @@ class SimulatedBoard {
   // `options`: further ones of cuboct-board-sim.
   explicit SimulatedBoard(const std::vector<std::string>& options = {},
                           const std::string& arch = "board.toml",
-                          const BoardChoice& board = {.name = "icebreaker", .baud = kBaud});
+                          const BoardChoice& board = {.name = "icebreaker", .baud = kBaud})
+      : SimulatedBoard(board_setup("grips.toml", arch), board, options) {}
+  // Of another scene than grips.toml.
+  SimulatedBoard(const Setup& setup, const BoardChoice& board, const std::vector<std::string>& options = {});
 
   const std::string& port() const { return port_; }
   // Ends it; what it told: "... cycles; to the board N bytes, ...".
@@ -53,6 +56,9 @@ struct BoardRun {
   uint64_t hash_every = 1;
 };
 Trace run_on_board(emu::Host& host, const BoardSetup& setup, const BoardRun& run);
+// From the first cycle of EXCHANGE_X to the last of DUMP, as docs/reference/board.md says, by the native
+// nodes.
+uint64_t cycles_of(const Setup& setup, uint64_t steps);
 // Golden's trace with every state.
 Trace golden_trace(const Setup& setup, uint64_t steps);
 // The first difference in hashes, stops, and each state that `run` kept; empty where there is none.

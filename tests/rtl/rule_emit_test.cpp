@@ -119,16 +119,19 @@ TEST_F(RuleEmit, TheProjectTellsOfItsRounds) {
   EXPECT_EQ(readme.find("_rom.sv"), std::string::npos);
 }
 
-TEST_F(RuleEmit, RefusesAHostsLink) {
-  const Case c = case_of("one", hot(kOneRound), {}, 1);
+// A host's link loads the state of any step, and nodes count steps from their reset.
+TEST_F(RuleEmit, RefusesAHostsLinkOfARuleThatReadsTheStep) {
+  const Case c = case_of("one", hot(kFourRounds), {}, 1);
   for (const auto& [board, said] :
        {std::pair{BoardChoice{.name = "ulx3s"}, "--board ulx3s: "},
         std::pair{BoardChoice{.name = "", .bus = "wishbone"}, "--bus wishbone: "}})
     EXPECT_TRUE(
         refused_with<InputError>([&] {
           with_places(c.scene, {}, [&] { check_emission(c.setup.plan, {.board = board}); });
-        }).starts_with(std::string("rule.toml:10:1: ") + said + "a host's link serves the pair law alone"))
+        }).starts_with(std::string("rule.toml:10:1: ") + said + "the rule '"))
         << said;
+  for (const char* bus : {"axi4lite", "wishbone"})
+    check_emission(case_of("one", hot(kOneRound), {}, 1).setup.plan, {.board = {.name = "", .bus = bus}});
 }
 
 }  // namespace
