@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/interrupt.h"
+#include "model/base/resources.h"
 #include "model/config/changes.h"
 #include "model/config/config.h"
 #include "synth/tool.h"
@@ -66,13 +68,15 @@ const Target& fit_target(const std::string& name, const BoardChoice& board) {
 }
 
 Fitter::Fitter(const std::string& scene, const std::string& arch, const Target& target,
-               const BoardChoice& board, std::function<void(const std::string&)> says)
+               const BoardChoice& board, std::function<void(const std::string&)> says,
+               std::function<void(const std::string&)> tells)
     : scene_path_(scene),
       arch_path_(arch),
       target_(target),
       board_(board),
       says_(std::move(says)),
-      meter_(target, [](const std::string&) {}),
+      tells_(std::move(tells)),
+      meter_(target, [this](const std::string&) { announce(); }),
       scene_(read_scene(scene)),
       arch_text_(text_of(arch)),
       arch_(least(parse_arch(arch_text_, arch))),
@@ -184,6 +188,7 @@ void Fitter::measure(const FitPoint& point) {
   says_(fmt::format("synthesises nodes of {} x {} x {} cells, {} lanes, {} pipes ({} done)", point.brick[0],
                     point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size()));
   const Plan plan = plan_at(point);
+  const auto begin = std::chrono::steady_clock::now();
   const Measured m = meter_.measure(
       [&](const std::string& directory) {
         try {
@@ -200,6 +205,25 @@ void Fitter::measure(const FitPoint& point) {
     all[r] += around[r];
     around_[r] = static_cast<double>(around[r]) / static_cast<double>(m.nodes);
   }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (!m.kept) ++syntheses_, seconds_ += seconds;
+  if (announced_) tells_(line_of(point, m.kept, seconds));
+}
+
+// Before the first tool: how long a synthesis takes is not known before one was made.
+void Fitter::announce() {
+  if (announced_) return;
+  announced_ = true;
+  std::string line =
+      single() ? "one synthesis: seconds for a small node, minutes for a large one"
+               : fmt::format("3 to {} syntheses, each of seconds for small nodes and minutes for large ones",
+                             kMostSyntheses + 2);
+  if (!measured_.empty()) line += fmt::format("; {} known from before", measured_.size());
+  tells_(line);
+}
+
+std::string Fitter::kept() const {
+  return syntheses_ == 0 || cache_directory().empty() ? "" : cache_directory() + "/fit";
 }
 
 void Fitter::choose() {

@@ -25,15 +25,20 @@ const Target& fit_target(const std::string& target, const BoardChoice& board);
 // Particles in the cell that has most, at least 1.
 int fullest(const PairCensus& census, uint32_t cells);
 
-// Syntheses after which the best that was measured has to do.
+// Syntheses after which the best that was measured has to do. Two more are made where the sixteenth is the
+// first node of another kind, which takes three.
 inline constexpr size_t kMostSyntheses = 16;
 
 class Fitter {
  public:
   // Reads scene and arch. Throws InputError; a tool that is missing is told first.
-  // `says` hears what it does next.
+  // `says` hears what it does next. `tells` hears a line before the first synthesis, and one after each, with
+  // its seconds.
   Fitter(const std::string& scene, const std::string& arch, const Target& target, const BoardChoice& board,
-         std::function<void(const std::string& what)> says);
+         std::function<void(const std::string& what)> says,
+         std::function<void(const std::string& line)> tells);
+  Fitter(const Fitter&) = delete;  // meter_ tells this one
+  Fitter& operator=(const Fitter&) = delete;
 
   // Searches, measures, and searches again until the best plan is one that was measured. Throws InputError
   // with the numbers of the nearest where none fits, ToolFailed, Interrupted.
@@ -45,6 +50,9 @@ class Fitter {
   std::string arch_text() const;
   Setup setup() const;
   uint64_t steps() const { return scene_.steps; }  // of the scene's run
+  // Where another search finds what this one measured: empty where it kept nothing, as there is no cache, or
+  // nothing was measured yet.
+  std::string kept() const;
 
  private:
   struct Row {
@@ -60,6 +68,10 @@ class Fitter {
   FitCosts costs();
   void find_shapes();
   void measure(const FitPoint& point);
+  // Whether there is one plan alone to measure.
+  bool single() const { return space_.shapes.size() == 1 && space_.most_lanes == 1; }
+  void announce();
+  std::string line_of(const FitPoint& point, bool known, double seconds) const;
   bool measured(const FitPoint& point) const { return measured_.contains(point); }
   FitAmounts least_uses(const Cell& brick, uint64_t nodes);
   bool fit_memories(const Target& target, const Cell& brick, uint64_t nodes);
@@ -75,7 +87,10 @@ class Fitter {
   std::string scene_path_, arch_path_;
   const Target& target_;
   BoardChoice board_;
-  std::function<void(const std::string&)> says_;
+  std::function<void(const std::string&)> says_, tells_;
+  size_t syntheses_ = 0;  // made here, not found in the cache
+  double seconds_ = 0;    // that these took
+  bool announced_ = false;
   Meter meter_;
   Scene scene_;
   std::string arch_text_;

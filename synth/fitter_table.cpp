@@ -73,6 +73,20 @@ std::string Fitter::verdict(const FitAmounts& uses) const {
                      planned < 1 ? fmt::format(", planned to {:.0f} %", 100 * planned) : "");
 }
 
+// Of one that was synthesised. What may be left is the mean of those that were, times the most that may come.
+std::string Fitter::line_of(const FitPoint& point, bool known, double seconds) const {
+  const FitAmounts& all = measured_.at(point);
+  std::string line = fmt::format("{}: {} cells a node, {}, {}: {}, {}", measured_.size(),
+                                 cells_text(point.brick), counted(static_cast<uint64_t>(point.lanes), "lane"),
+                                 counted(static_cast<uint64_t>(point.pipes), "pipe"),
+                                 known ? "known" : fmt::format("{:.0f} s", seconds), numbers(all));
+  const size_t left = measured_.size() < kMostSyntheses ? kMostSyntheses - measured_.size() : 0;
+  if (syntheses_ > 0 && left > 0 && !single())
+    line += fmt::format("; {} more at most, of {:.0f} s each so far", left,
+                        seconds_ / static_cast<double>(syntheses_));
+  return line;
+}
+
 void Fitter::add_row(std::vector<Row>& rows, const std::optional<FitChoice>& plan) {
   if (plan && std::ranges::none_of(rows, [&](const Row& r) { return r.plan.point == plan->point; }))
     rows.push_back({*plan, plan->point == choice_->point});

@@ -141,7 +141,7 @@ void add_emit(Command& app, int&) {
   command
       .option("--fit", options->fit,
               "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
-              "hx8k, ecp5-25, ecp5-85 or xc7")
+              "hx8k, ecp5-25, ecp5-85 or xc7; takes minutes, and goes on after Ctrl-C")
       .proposed({"up5k", "hx8k", "ecp5-25", "ecp5-85", "xc7"})
       .type_name("TARGET");
   const Option board = command

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <cstdio>
+
 #include "cli/machine/emit.h"
 #include "cli/machine/machine_cycles.h"
 #include "hw/rtl/rtl_emit.h"
@@ -16,6 +18,13 @@ namespace {
 
 void say(const std::string& what) {
   if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "fit: " + what + " ...");
+}
+
+// A line that stays.
+void tell(const std::string& line) {
+  say("");
+  fmt::print(stderr, "fit: {}\n", line);
+  std::fflush(stderr);
 }
 
 // Nothing of the progress is left where a search ends, however it does.
@@ -45,10 +54,15 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
   check_emit_directory(out);
   catch_interrupts();
   try {
-    synth::Fitter fitter(input.scene, input.arch, device, emission.board, say);
-    {
+    synth::Fitter fitter(input.scene, input.arch, device, emission.board, say, tell);
+    try {
       const Said said;
       fitter.choose();
+    } catch (const synth::Interrupted&) {
+      if (fitter.kept().empty()) throw;
+      throw Failed("interrupted; nothing was written",
+                   fmt::format("the syntheses that ended are in {}: the same command goes on from there",
+                               fitter.kept()));
     }
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();

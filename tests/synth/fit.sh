@@ -20,7 +20,11 @@ refused() {  # expected text; arguments of emit
 
 cp "$here/lone.toml" "$here/narrow.toml" "$here/sheet.toml" .
 "$cuboct" emit lone.toml --arch narrow.toml --fit up5k --out fitted > printed 2> said || fail "$(cat said)"
-[ ! -s said ] || fail "not quiet in a pipe: $(cat said)"
+# What takes long is said before it begins, and each synthesis in a line when it is done.
+diff <(sed -E 's/[0-9]+( s|\/)/N\1/g' said) - <<'SAID' || fail "said in other words"
+fit: one synthesis: seconds for a small node, minutes for a large one
+fit: 1: 1 x 1 x 1 cells a node, 1 lane, 1 pipe: N s, LUT N/5280, FF N/5280, DSP N/8, BRAM N/30, logic cells N/5280
+SAID
 grep -qE '^> 1 x 1 x 1 +1 +1 +1 +50 +[0-9]+ % +[0-9]+ % +[0-9]+ % +[0-9]+ % +[0-9]+ %  chosen$' printed || fail "$(cat printed)"
 grep -qE '^synthesised      LUT [0-9]+/5280, FF [0-9]+/5280, DSP 5/8, BRAM [0-9]+/30, logic cells [0-9]+/5280$' printed ||
   fail "$(cat printed)"
@@ -33,7 +37,8 @@ diff -r -x .cuboct-emit -x arch.toml fitted again || fail "another project"
 mkdir none
 printf '#!/bin/sh\n[ "$1" = -V ] && exec "%s" -V\nexit 9\n' "$(command -v yosys)" > none/yosys
 chmod +x none/yosys
-PATH=$work/none:$PATH "$cuboct" emit lone.toml --arch narrow.toml --fit up5k --out fitted > printed.again || fail "measured again"
+PATH=$work/none:$PATH "$cuboct" emit lone.toml --arch narrow.toml --fit up5k --out fitted > printed.again 2> said || fail "measured again"
+[ ! -s said ] || fail "nothing takes long: $(cat said)"
 cmp printed printed.again
 # The choice of an earlier time is chosen anew, and said once.
 cp fitted/arch.toml before.toml
@@ -75,7 +80,9 @@ sed 's/capacity = 3/capacity = 3\nmemories = "narrow"/' narrow.toml > one_port.t
 code=0
 "$cuboct" emit sheet.toml --arch one_port.toml --fit up5k --out refused > printed 2> said || code=$?
 [ $code = 2 ] && [ ! -s printed ] && [ ! -e refused ] || fail "narrow memories: $code"
-diff <(sed -E 's/[0-9.]+( times|\/)/N\1/g' said) - <<'SAID'
+diff <(sed -E 's/[0-9.]+( times|\/| s,)/N\1/g' said) - <<'SAID'
+fit: one synthesis: seconds for a small node, minutes for a large one
+fit: 1: 1 x 1 x 1 cells a node, 1 lane, 1 pipe: N s, LUT N/5280, FF N/5280, DSP N/8, BRAM N/30, logic cells N/5280
 sheet.toml: its 4 cells do not fit up5k with narrow memories: the nearest plan, 4 nodes of 1 x 1 x 1 cells with 1 lane and 1 pipe, takes LUT N/5280 (N times), DSP N/8 (N times), logic cells N/5280 (N times), FF N/5280, BRAM N/30
   hint: --fit ecp5-25 has room by these numbers; about 1 cell would fit up5k, some 2 particles of this scene; memories = "wide" have bricks
 SAID
@@ -91,16 +98,43 @@ code=0
 [ $code = 2 ] || fail "a directory within a file: $code"
 grep -qx "refused.dir/mine/fit: cannot be made, as $work/refused.dir/mine is no directory" said || fail "$(cat said)"
 
-# An interrupt while yosys works.
-"$cuboct" emit lone.toml --arch narrow.toml --fit hx8k --out stopped > printed 2> said &
-child=$!
-for _ in $(seq 6000); do
-  pgrep -P $child yosys > found && break
-  sleep 0.1
-done
-kill -INT $child
-code=0
-wait $child || code=$?
-[ $code = 1 ] || fail "an interrupt: exit $code"
-grep -qx 'interrupted; nothing was written' said || fail "an interrupt: $(cat said)"
-[ ! -e stopped ] && [ -z "$(ls cache/cuboct/fit)" ] || fail "an interrupt leaves something"
+# An interrupt while yosys works. `stopped`: waits for a program below the command, and stops it.
+stopped() {  # program; arguments of emit
+  "$cuboct" emit "${@:2}" --out stopped > printed 2> said &
+  local child=$! code=0
+  for _ in $(seq 6000); do
+    pgrep -P $child "$1" > found && break
+    sleep 0.1
+  done
+  kill -INT $child
+  wait $child || code=$?
+  [ $code = 1 ] && [ ! -e stopped ] || fail "an interrupt: exit $code"
+  grep -qx 'interrupted; nothing was written' said || fail "an interrupt: $(cat said)"
+}
+stopped yosys lone.toml --arch narrow.toml --fit hx8k
+[ -z "$(ls cache/cuboct/fit)" ] || fail "an interrupt leaves something"
+! grep -q hint said || fail "before the first synthesis nothing is kept: $(cat said)"
+
+# After the first of several that one is kept, and the same command begins behind it. This yosys synthesises once.
+mkdir second
+cat > second/yosys <<END
+#!/bin/sh
+[ "\$1" = -V ] && exec "$(command -v yosys)" -V
+[ ! -e "$work/first" ] || exec sleep 600
+touch "$work/first"
+exec "$(command -v yosys)" "\$@"
+END
+chmod +x second/yosys
+PATH=$work/second:$PATH stopped sleep sheet.toml --arch narrow.toml --fit hx8k
+diff <(sed -E 's/[0-9]+ s(,| each)/N s\1/g; s/LUT.*\/7680/USE/' said) - <<SAID || fail "an interrupt in other words"
+fit: 3 to 18 syntheses, each of seconds for small nodes and minutes for large ones
+fit: 1: 2 x 2 x 1 cells a node, 1 lane, 1 pipe: N s, USE; 15 more at most, of N s each so far
+interrupted; nothing was written
+  hint: the syntheses that ended are in $work/cache/cuboct/fit: the same command goes on from there
+SAID
+[ "$(ls cache/cuboct/fit | wc -l)" = 1 ] || fail "the first synthesis is gone"
+PATH=$work/second:$PATH stopped sleep sheet.toml --arch narrow.toml --fit hx8k
+diff said - <<SAID || fail "it does not go on"
+fit: 3 to 18 syntheses, each of seconds for small nodes and minutes for large ones; 1 known from before
+interrupted; nothing was written
+SAID
