@@ -2,6 +2,9 @@
 // The C++ library as its users see it: by cuboct/cuboct.h alone.
 #include <cuboct/cuboct.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -193,6 +196,26 @@ TEST(Library, AStepThatCannotBeDone) {
   const auto last = simulation.hash();
   EXPECT_THROW(simulation.step(), cuboct::RunStopped);
   EXPECT_EQ(simulation.hash(), last);
+}
+
+// As any program does that catches nothing.
+TEST(Library, ACtrlCEndsTheProgram) {
+  int begun[2];
+  ASSERT_EQ(pipe(begun), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    Simulation simulation(kCoupon, with("golden"));
+    simulation.step();
+    if (write(begun[1], "!", 1) != 1) _exit(3);
+    while (simulation.steps() < 1'000'000) simulation.step(100);
+    _exit(0);
+  }
+  char byte = 0;
+  ASSERT_EQ(read(begun[0], &byte, 1), 1);
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT) << status;
 }
 
 TEST(Library, EnginesThatAreProgramsAreFoundBesideIt) {
