@@ -130,10 +130,6 @@ py::dict dict_of(const WholeRun& run) {
   out["counters"] = counters;
   py::list warnings;
   for (const Finding& finding : trace.findings) warnings.append(finding.text);
-  if (std::string wide = machine ? reach_warning(scene, plan) : ""; !wide.empty())
-    warnings.push_back(std::move(wide));
-  const std::string reach = machine ? reach_line(scene, plan) : "";
-  out["reach"] = reach.empty() ? py::none() : py::cast(reach);
   out["warnings"] = warnings;
   out["stopped"] = trace.stop ? py::cast(trace.stop->text) : py::none();
   out["reached"] = trace.reached ? py::cast(reached_text(trace)) : py::none();
