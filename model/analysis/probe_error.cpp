@@ -62,8 +62,10 @@ Parts parts_of(const Scene& scene) {
   return parts;
 }
 
-// Whether initial velocities lie across the body's longest side, and so bend it.
-bool swings(const Scene& scene, const Vec3& size) {
+// Whether initial velocities lie across the longest side of a body that is one, and so bend it.
+bool swings(const Scene& scene, const Parts& parts, const Vec3& size) {
+  if (std::ranges::any_of(parts.root, [&](uint32_t root) { return root != parts.root.front(); }))
+    return false;
   int along = 0, across = 0;
   const double longest = size.maxCoeff(&along);
   Vec3 square = Vec3::Zero();
@@ -78,13 +80,14 @@ class Estimate {
   Estimate(const Scene& scene, const FixedRule& fixed)
       : scene_(scene), fixed_(fixed), motion_(motion_of(scene)), bond_(bond_error(scene, fixed, motion_)) {
     const Vec3 size = body_size(scene);
+    parts_ = parts_of(scene);
     length_ = std::max(size.maxCoeff(), motion_.rest_distance);
     const auto count = static_cast<double>(scene.body.size());
     sections_ = std::max(1.0, count * motion_.rest_distance / length_);
     time_ = static_cast<double>(scene.steps) * scene.rule.dt;
     const bool initial = motion_.cause == StrainCause::initial || motion_.cause == StrainCause::rotation;
     const bool bends = motion_.cause == StrainCause::bending ||
-                       (motion_.cause == StrainCause::initial && swings(scene, size));
+                       (motion_.cause == StrainCause::initial && swings(scene, parts_, size));
     // Of a ramp the root mean square is 1/sqrt(3) of its end, of a vibration 1/sqrt(2) of its largest.
     const double of_curve = std::sqrt(initial ? 2 : 3);
     // A part steps between its two signs as the strain passes units: twice its size. A wave of that stress is
@@ -92,7 +95,6 @@ class Estimate {
     // different times.
     force_ = bends ? 2 * of_curve * bond_.together(sections_, count) : 4 * of_curve * bond_.together();
     breaks_ = bond_.peak_strain > 0 && kConcentration * bond_.strain >= bond_.peak_strain;
-    parts_ = parts_of(scene);
     for (size_t t = 0; t < fixed.types.size(); ++t) add_type(t);
   }
 
@@ -245,17 +247,18 @@ class Estimate {
       return error;
     }
     const double unit = std::ldexp(fixed_.cell_edge, -fixed_.widths.velocity_frac() - 1) / scene_.rule.dt;
-    // Alone, a body strains about a motion that is exact.
-    double blow = force_ * strained / speed;
+    // Alone, a body strains about a motion that is exact, unless its particles begin to move against others.
+    double blow = motion_.cause == StrainCause::initial ? force_ : force_ * strained / speed;
     if (others) {
       // Of two alike that meet each is strained by half of what their speed makes.
-      const double met = std::max(bond_.strain, start / (2 * motion_.sound_speed));
+      const double half = motion_.sound_speed > 0 ? start / (2 * motion_.sound_speed) : 0,
+                   met = std::max(bond_.strain, half);
       error.until_breaks = bond_.peak_strain > 0 && kConcentration * met >= bond_.peak_strain;
       blow = error.until_breaks ? force_ : force_ / std::sqrt(sections_);
     }
     const double flight = (unit + loads_ * fall) / speed;
     error.curves = {{quantity, power * (blow + flight)}};
-    error.why = flight > blow ? "the rounding of velocities" : part();
+    error.why = flight > blow || !has_strain() ? "the rounding of velocities" : part();
     return error;
   }
 
