@@ -68,7 +68,7 @@ void check_machine(const Loaded& loaded) {
   with_places(loaded.scene, plan.arch, [&] {
     if (const std::string why = machine_refusal(plan); !why.empty())
       throw InputError("the scene has no machine: " + why)
-          .about({"box.size", "box.cells", "box", "rule.file", "rule"});
+          .about({"box.size", "box.cells", "box", "particles.file", "rule.file", "rule"});
   });
 }
 

@@ -39,7 +39,7 @@ constexpr CommandRow kCommands[] = {
     {"bench", "measure how fast the engines are", "cuboct-bench", nullptr},
     {"curves", "write what the probes of a run read as comma-separated values", kCore, nullptr},
     {"measure", "radial distribution, displacement, structure, stress of a run", kCore, nullptr},
-    {"state", "write where particles are at the end of a run, as a file to start from", kCore, nullptr},
+    {"state", "write the end of a run as a file that a scene can start from", kCore, nullptr},
     {"picture", "draw the frames of a run's directory, of bodies of any size", kCore, nullptr},
     {"report", "make one HTML file of a run's directory", kCore, nullptr},
 };

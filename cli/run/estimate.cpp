@@ -19,7 +19,8 @@ namespace cuboct {
 namespace {
 
 // Keys that say how many particles and cells there are.
-const std::vector<std::string> kOfSize{"packing.pitch", "box.cells", "geometry", "particle"};
+const std::vector<std::string> kOfSize{"packing.pitch", "box.cells", "geometry", "particles.file",
+                                       "particle"};
 
 constexpr double kProgram = 20e6;  // bytes, of a process before it has read anything
 

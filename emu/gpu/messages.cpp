@@ -39,7 +39,7 @@ void throw_few_planes(int slabs, int planes) {
 
 void throw_far_particle(size_t particle) {
   throw InputError(fmt::format("particle {} is more than 1e9 cells away from the first", particle))
-      .about({"particle", "packing"});
+      .about({"particle", "particles.file", "packing"});
 }
 
 void throw_not_finite(uint64_t step, uint32_t fastest, double speed) {

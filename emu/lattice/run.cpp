@@ -31,7 +31,7 @@ int readers(const LatticeOptions& options) { return options.threads > 0 ? option
 void check_timed(const Plan& plan, const Ranks* ranks) {
   if (const std::string why = machine_refusal(plan); !why.empty())
     throw InputError("--cycles: the timing model counts those of a machine, and " + why)
-        .about({"box.size", "box.cells", "box", "rule.file", "rule"});
+        .about({"box.size", "box.cells", "box", "particles.file", "rule.file", "rule"});
   if (ranks != nullptr && ranks->size() > 1)
     throw InputError("--cycles: the timing model runs on one rank alone");
 }

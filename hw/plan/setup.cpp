@@ -46,7 +46,7 @@ CellEdges periodic_edges(const Scene& scene, double least, CellForm form) {
   const Vec3& extent = scene.periodic.extent;
   const double longest = extent.maxCoeff();
   if (longest <= 0) return least;
-  const std::vector<std::string> causes{"box.size", "box.cells", "box"};
+  const std::vector<std::string> causes{"box.size", "box.cells", "box", "particles.file"};
   if (longest / least > kMostInRow)
     scene.places.fail(
         causes, fmt::format("the periodic box is {:.3g} cells of {:.4g} m long: at most {:.3g} can be built",

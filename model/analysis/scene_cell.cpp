@@ -59,7 +59,7 @@ SceneCell cell_of(const Scene& scene, const std::string& material) {
     return out;
   }
   if (scene.pitch == 0)
-    scene.places.fail({"particle", "crystal"}, "the scene has no cell that repeats",
+    scene.places.fail({"particle", "particles.file", "crystal"}, "the scene has no cell that repeats",
                       "give it a [box] with periodic = \"xyz\", or a [packing]");
   const uint8_t type = type_of(scene, material);
   Mat3 primitive;

@@ -86,7 +86,7 @@ constexpr size_t kMostClosed = 8, kAlwaysClosed = 2'000'000, kMostAdded = 8'000'
                   "slants takes all cells of the box around it",
                   most, asked),
       "turn its length along an axis, or a larger pitch")
-      .about({"geometry", "packing.pitch", "box", "particle"});
+      .about({"geometry", "packing.pitch", "box", "particles.file", "particle"});
 }
 
 constexpr int bit_of(int dx, int dy, int dz) { return 13 + dx + 3 * dy + 9 * dz; }

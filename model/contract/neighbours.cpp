@@ -16,7 +16,7 @@ CellList::CellList(double cutoff, const Periodic& periodic, double skin)
     if (extent != 0 && !(extent >= 2 * cutoff)) {
       throw InputError(fmt::format("the periodic box is {:g} m long along {}, less than two cutoffs ({:g} m)",
                                    extent, "xyz"[axis], 2 * cutoff))
-          .about({"box.size", "box.cells", "box"});
+          .about({"box.size", "box.cells", "box", "particles.file"});
     }
   }
 }

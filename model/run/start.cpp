@@ -33,10 +33,11 @@ void check_alike(const Scene& scene, const LeftState& left, const std::string& f
   const Body& body = scene.body;
   const size_t count = left.body.size();
   if (count != body.size())
-    differ(scene, {"geometry", "packing", "particle"}, from,
+    differ(scene, {"geometry", "packing", "particles.file", "particle"}, from,
            fmt::format("{} there, {} here", count, body.size()));
   if (left.packing != packing_hash(scene))
-    differ(scene, {"packing.pitch", "geometry", "particle"}, from, "their packing or its box is another one");
+    differ(scene, {"packing.pitch", "geometry", "particles.file", "particle"}, from,
+           "their packing or its box is another one");
   for (size_t id = 0; id < count; ++id) {
     const std::string there = material_of(left.types[left.body.type[id]]);
     const std::string here = material_of(scene.rule.types[body.type[id]].name);

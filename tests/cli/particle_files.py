@@ -130,6 +130,20 @@ def check_lammps(folder, kind):
     return potential * unit, kinetic * unit, len(rows)
 
 
+def check_engines(folder):
+    """All engines of integers that are built begin with the same bits."""
+    path = scene(folder, "lj", "lj.data")
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text.replace("cutoff = 2.5", "cutoff = 1.6"))
+    engines = ["golden", "lattice"] + [name for name in ("systemc",) if os.path.exists(os.path.join(PROGRAMS, "cuboct-" + name))]
+    command = [os.path.join(PROGRAMS, "cuboct"), "crosscheck", path, "--engines", ",".join(engines), "--steps", "5"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"matched 1280 updates over 5 steps in {len(engines)} engines" in done.stdout, done.stdout
+
+
 def rows_of_velocities(path):
     with open(path, encoding="utf-8") as file:
         text = file.read().split("Velocities")[1]
@@ -178,3 +192,4 @@ with tempfile.TemporaryDirectory() as directory:
     if LAMMPS:
         for name in LIQUIDS:
             print(f"files of LAMMPS, units {name}: potential %.9g, kinetic %.9g of %d particles" % check_lammps(directory, name))
+        check_engines(directory)

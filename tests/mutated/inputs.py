@@ -51,6 +51,27 @@ def chosen(rng, weighted):
     return rng.choices([item for _, item in weighted], [weight for weight, _ in weighted])[0]
 
 
+ROWS = [(k, 1.1 * (k % 3), 1.1 * (k // 3 % 3), 1.1 * (k // 9), 0.1 * (k % 5) - 0.2) for k in range(27)]
+XYZ = ('2\nany\nA 0 0 0\nA 1 0 0\n27\nLattice="9 0 0 0 9 0 0 0 9" Origin="0 0 0" Properties=species:S:1:pos:R:3:id:I:1:velo:R:3 pbc="T F F" Time=2\n' +
+       "".join("A %.3f %.3f %.3f %d %.2f 0 0\n" % (x, y, z, k, v) for k, x, y, z, v in ROWS)).encode()
+LAMMPS_DATA = ("LAMMPS data file\n\n27 atoms\n1 atom types\n\n0 9 xlo xhi\n0 9 ylo yhi\n0 9 zlo zhi\n\nMasses\n\n1 1\n\nPair Coeffs # lj/cut\n\n1 1 1\n\n"
+               "Atoms # atomic\n\n" + "".join("%d 1 %.3f %.3f %.3f 0 0 0\n" % (k + 1, x, y, z) for k, x, y, z, v in ROWS) +
+               "\nVelocities\n\n" + "".join("%d %.2f 0 0\n" % (k + 1, v) for k, x, y, z, v in ROWS)).encode()
+FILED_SCENE = b'''units = "reduced"
+mass = 1
+[particles]
+file = "%s"
+units = { length = 1, velocity = 1 }
+[law]
+kind = "lj"
+epsilon = 1
+sigma = 1
+cutoff = 2.5
+[run]
+dt = 0.001
+steps = 2
+'''
+
 class Kinds:
     def __init__(self, root, shop):
         self.root, self.shop = root, shop
@@ -162,6 +183,15 @@ class Kinds:
             model, taken = mutate.spoil(meshes.model_3mf(), rng, mutate.TEXT)
             return Case("", 0, files | {"in/" + name: meshes.packed_3mf(model)}, command, taken + [name])
         return self.spoilt(rng, data, mutate.TEXT if text and rng.random() < 0.8 else mutate.BYTES, files, "in/" + name, command)
+
+    def particles(self, rng):
+        command = chosen(rng, [(3, ["check", "in/scene.toml"]), (1, RUN)])
+        name, data = rng.choice([("a.xyz", XYZ), ("a.data", LAMMPS_DATA)])
+        scene = FILED_SCENE % name.encode()
+        if rng.random() < 0.2:
+            return self.toml(rng, scene, [SMALL_SCENE], {"in/" + name: data}, "in/scene.toml", command)
+        # A reader finds the particle's place, engines find faults of the scene in the scene.
+        return self.spoilt(rng, data, mutate.TEXT if rng.random() < 0.8 else mutate.BYTES, {"in/scene.toml": scene}, "in/" + name, command)
 
     def potential(self, rng):
         data = self.source("scenes/studies/silicon.tersoff")
@@ -291,5 +321,5 @@ def change_words(words, rng):
 
 # How many of 3,500 inputs are of each kind. Those of yosys take seconds each.
 SHARES = {"scene": 1000, "arch": 300, "study": 250, "machines": 120, "fit": 200, "potential_fit": 100, "multiscale": 170, "gmsh": 100, "learn": 90,
-          "pitch": 60, "technology": 180, "mesh": 270, "potential": 120, "run_directory": 160, "checkpoint": 120, "results": 130, "liberty": 15, "project": 15,
+          "pitch": 60, "technology": 180, "mesh": 200, "particles": 120, "potential": 70, "run_directory": 160, "checkpoint": 120, "results": 130, "liberty": 15, "project": 15,
           "line": 100}
