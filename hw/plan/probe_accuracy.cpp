@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "hw/plan/two_digits.h"
 #include "model/base/error.h"
 #include "model/contract/format_cures.h"
 #include "model/contract/quantise.h"
@@ -61,12 +62,6 @@ Lack lack_of(const Scene& scene, const FixedRule& rule) {
         lack = {&probe, curve, ratio};
   }
   return lack;
-}
-
-// Two digits, not below.
-double rounded_up(double x) {
-  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
-  return std::ceil(x / unit * (1 - 1e-9)) * unit;
 }
 
 // Whether two rules have the formats that accuracy chooses in common.
@@ -132,7 +127,7 @@ void refine_for_probes(const Scene& scene, const Arch& arch, const CellEdges& ed
       fmt::format("the {} of probe '{}' cannot be had within {:.2g}: the best that formats do is "
                   "about {:.2g}",
                   best.curve.quantity, best.probe->name, best.probe->accuracy, best.curve.error),
-      fmt::format("accuracy = {:.2g}, or doubles (--engine reference)", rounded_up(best.curve.error)))
+      fmt::format("accuracy = {:.2g}, or doubles (--engine reference)", two_digits_up(best.curve.error)))
       .about({fmt::format("probe[{}].accuracy", best.probe->name)});
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hw/plan/reach.h"
+#include "hw/plan/two_digits.h"
 #include "model/analysis/motion_reach.h"
 #include "model/base/error.h"
 #include "model/base/quantity_text.h"
@@ -26,12 +27,6 @@ double cells_of(const Scene& scene, const Plan& plan) {
   const Cell period = plan.lattice.period();
   return Lattice(reachable_cells(scene, plan.rule.edges(), plan.origin, period, plan.rule.axes), period)
       .size();
-}
-
-// Two digits, rounded up.
-double rounded_up(double length) {
-  const double unit = std::pow(10, std::floor(std::log10(length)) - 1);
-  return std::ceil(length / unit * (1 - 1e-9)) * unit;
 }
 
 // As a scene has it: "[2, 2, 60] mm".
@@ -96,7 +91,7 @@ std::string reach_warning(const Scene& scene, const Plan& plan) {
     text += fmt::format(". Without reach.min and reach.max they are {}", count_text(cells_of(other, plan)));
   }
   other.reach_margin = Vec3::Constant(edge) + largest_beyond(scene, motion_reach(scene));
-  for (double& margin : other.reach_margin) margin = rounded_up(margin);
+  for (double& margin : other.reach_margin) margin = two_digits_up(margin);
   other.reach = {Vec3::Zero(), Vec3::Zero()};
   text += fmt::format(". The motion of the scene asks for {} of them: set margin = \"auto\"",
                       count_text(automatic));
