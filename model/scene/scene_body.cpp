@@ -532,7 +532,8 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   }
   for (size_t a = 0; a < 3; ++a)
     if (periodic[a] && !(box.extent[a] > 0))
-      table->at("periodic").fail(fmt::format("the particles' file has no length of the box along {}", "xyz"[a]));
+      table->at("periodic")
+          .fail(fmt::format("the particles' file has no length of the box along {}", "xyz"[a]));
   table->done();
   return {box, periodic};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "model/solid/stiffest_parts.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
