@@ -94,9 +94,9 @@ class Collector {
   const ShownReader reader_;
   const uint32_t nodes_;
   const int rounds_;
-  const size_t phases_;               // of a step
-  const int shown_phase_;             // with whose end a node has shown its particles
-  const int last_phase_;              // of a step
+  const size_t phases_;    // of a step
+  const int shown_phase_;  // with whose end a node has shown its particles
+  const int last_phase_;   // of a step
   Trace trace_;
   std::vector<uint64_t> step_;             // per node: the step it is in
   std::vector<bool> stopped_;              // per node: back in IDLE

@@ -20,8 +20,9 @@ class ShownReader {
   // Keeps a reference to `plan`.
   explicit ShownReader(const Plan& plan);
 
-  // `cell`: index into the lattice. `step`: after which it is shown. Throws std::runtime_error for a particle that the plan does not have, as
-  // an unchecked link may make one, or whose row of bonds is not the one that it was loaded with.
+  // `cell`: index into the lattice. `step`: after which it is shown. Throws std::runtime_error for a particle
+  // that the plan does not have, as an unchecked link may make one, or whose row of bonds is not the one that
+  // it was loaded with.
   Shown read(const Word& word, uint32_t cell, uint64_t step) const;
   uint64_t hash(const Shown& shown) const;
   // Behind the particles that the state has; in any order.

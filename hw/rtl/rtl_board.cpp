@@ -39,15 +39,16 @@ std::string print_machine_package(const Plan& plan, const RtlDesign& design) {
       "  localparam int          StageBits   = {};  // of a fault's stage, of a rule of text\n"
       "  localparam int          PhaseBits   = {};  // phases of a step\n"
       "  localparam int          Slots       = {};  // of a node\n"
+      "  localparam int          VelocityBits = {};\n"
       "  localparam int          MovedTypes  = {};\n"
       "  localparam logic [{}:0] Velocities = {};\n"
       "  localparam logic [63:0] PlanHash    = 64'h{:016x};\n"
       "  localparam logic [63:0] MachineHash = 64'h{:016x};\n"
       "endpackage\n",
-      design.maker, plan.nodes(), plan.bricks.cell_bits(), stage_bits(plan),
-      phases_of(design.rounds),
-      cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity), design.moved.size(),
-      velocities_bits(design) - 1, print_velocities(design), plan.hash, machine_hash(plan));
+      design.maker, plan.nodes(), plan.bricks.cell_bits(), stage_bits(plan), phases_of(design.rounds),
+      cells_of(plan.bricks.shape()) * static_cast<uint32_t>(plan.arch.capacity),
+      plan.rule.widths.velocity_bits, design.moved.size(), velocities_bits(design) - 1,
+      print_velocities(design), plan.hash, machine_hash(plan));
 }
 
 void legalise_machine(const Plan& plan) {

@@ -119,9 +119,8 @@ std::vector<int> finish_outputs(const FixedProgram& program, const Round& round)
 
 bool reads_step(const FixedProgram& program) {
   const auto reads = [](const Graph& graph) {
-    return std::ranges::any_of(graph.nodes, [](const Node& node) {
-      return node.op == Op::input && node.source == Source::step;
-    });
+    return std::ranges::any_of(
+        graph.nodes, [](const Node& node) { return node.op == Op::input && node.source == Source::step; });
   };
   return std::ranges::any_of(program.rounds,
                              [&](const Round& round) { return reads(round.pair) || reads(round.finish); });

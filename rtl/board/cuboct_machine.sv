@@ -16,7 +16,7 @@ module cuboct_machine #(
 );
   localparam int ParticleBits = cuboct_pkg::ParticleBits;
   localparam int IdBits       = cuboct_pkg::IdBits;
-  localparam int VelocityBits = cuboct_pkg::VelocityBits;
+  localparam int VelocityBits = cuboct_machine_pkg::VelocityBits;
   // On the line a particle's word, and a fault's id, have the cell of a brick above them; and above that the
   // fault of a rule of text has its stage.
   localparam int CellBits     = cuboct_machine_pkg::CellBits;

@@ -11,12 +11,6 @@ namespace {
 
 constexpr double kBusTimeout = 20;  // s
 
-BoardChoice behind(const std::string& bus) {
-  BoardChoice choice;
-  choice.bus = bus;
-  return choice;
-}
-
 class Bus : public testing::TestWithParam<std::string> {};
 
 TEST_P(Bus, HoldsGoldensBitsAndFaults) {

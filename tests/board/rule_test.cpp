@@ -13,7 +13,7 @@
 namespace cuboct::test {
 namespace {
 
-constexpr double kTimeout = 20;  // s
+constexpr double kRuleTimeout = 20;  // s
 
 // Eight particles in two nodes; what is left is held, what is right moved.
 std::string small(const std::string& rule) {
@@ -27,12 +27,6 @@ std::string small(const std::string& rule) {
          rule;
 }
 
-BoardChoice behind(const std::string& bus) {
-  BoardChoice choice;
-  choice.bus = bus;
-  return choice;
-}
-
 Trace run(emu::Host& host, const Case& c, const BoardRun& run) {
   return run_on_board(host, {c.setup, c.scene}, run);
 }
@@ -40,7 +34,7 @@ Trace run(emu::Host& host, const Case& c, const BoardRun& run) {
 // All states, and a run that is read at its end alone.
 void expect_golden(const Case& c, const BoardChoice& choice, uint64_t steps) {
   SimulatedBoard machine(c.setup, choice);
-  emu::Host host(machine.port(), SimulatedBoard::kBaud, kTimeout);
+  emu::Host host(machine.port(), SimulatedBoard::kBaud, kRuleTimeout);
   const Trace golden = golden_trace(c.setup, steps);
   std::vector<uint64_t> all(steps + 1);
   std::iota(all.begin(), all.end(), uint64_t{0});
@@ -81,10 +75,11 @@ TEST(RuleBoard, HoldsBondsThatBreak) {
 // Nodes count steps from their reset.
 TEST(RuleBoard, RefusesRulesThatReadTheStep) {
   const Case c = case_of("small", small(kFourRounds), {}, 9);
-  EXPECT_EQ(refused_with([&] { check_emission(c.setup.plan, {.board = behind("wishbone")}); }),
-            "--bus wishbone: the rule 'rule' reads the step, which nodes count from their reset, and a host loads "
-            "the state of any step\n  hint: emit the lattice without it: its ports take and show the rule's "
-            "particles");
+  EXPECT_EQ(
+      refused_with([&] { check_emission(c.setup.plan, {.board = behind("wishbone")}); }),
+      "--bus wishbone: the rule 'own' reads the step, which nodes count from their reset, and a host loads "
+      "the state of any step\n  hint: emit the lattice without it: its ports take and show the rule's "
+      "particles");
 }
 
 }  // namespace

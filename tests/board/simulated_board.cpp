@@ -104,8 +104,8 @@ Trace golden_trace(const Setup& setup, uint64_t steps) {
   trace.plan_hash = setup.plan.hash;
   trace.nodes = setup.plan.nodes();
   const Plan& plan = setup.plan;
-  Golden golden = plan.program ? Golden(plan.program->program, plan.lattice, plan.arch.capacity, setup.initial,
-                                        plan.program->rows)
+  Golden golden = plan.program ? Golden(plan.program->program, plan.lattice, plan.arch.capacity,
+                                        setup.initial, plan.program->rows)
                                : Golden(plan.rule, plan.lattice, plan.arch.capacity, setup.initial);
   try {
     for (uint64_t step = 0;; ++step) {

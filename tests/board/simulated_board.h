@@ -28,6 +28,13 @@ struct Answer {
 // Runs to its end.
 Answer command(const std::vector<std::string>& arguments);
 
+// Behind the wrapper of a bus instead of a board.
+inline BoardChoice behind(const std::string& bus) {
+  BoardChoice choice;
+  choice.bus = bus;
+  return choice;
+}
+
 class SimulatedBoard {
  public:
   static constexpr int kBaud = 3000000;  // four clocks per bit
