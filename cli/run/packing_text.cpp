@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "model/analysis/synopsis.h"
 #include "model/base/quantity_text.h"
 #include "model/scene/packed_shape.h"
 
@@ -45,14 +44,22 @@ struct Layers {
   int64_t count;
 };
 
+// Those that hold particles: between two bodies there may be some without.
+int64_t layers_in(const std::vector<Vec3>& x, int axis, double spacing) {
+  std::vector<int64_t> places;
+  places.reserve(x.size());
+  for (const Vec3& at : x) places.push_back(std::llround((at[axis] - x.front()[axis]) / spacing));
+  std::ranges::sort(places);
+  return static_cast<int64_t>(std::ranges::unique(places).begin() - places.begin());
+}
+
 std::vector<Layers> layers_of(const Scene& scene, const PackedShape& packed) {
-  const Vec3 size = body_size(scene);
   std::vector<Layers> layers;
   for (int a = 0; a < 3; ++a) {
     const auto& along = packed.along[static_cast<size_t>(a)];
     if (!along) continue;
     const double spacing = layer_spacing(packed.fcc, *along);
-    layers.push_back({a, spacing, std::llround(size[a] / spacing) + 1});
+    layers.push_back({a, spacing, layers_in(scene.packing().x, a, spacing)});
   }
   return layers;
 }

@@ -61,9 +61,8 @@ State begin_of(const Scene& scene, const Plan& plan, CheckpointReader* from) {
                         : to_fixed(scene.body, plan.rule, plan.lattice, plan.origin);
   State state = checked_state(*from, plan);
   if (!plan.program) return state;
-  std::vector<uint64_t> own = from->head().engine.own;
-  if (from->head().cycles)
-    own.resize(std::min(own.size(), program_words(*plan.program, state.particles.size())));
+  std::vector<uint64_t> own = from->head().engine.own;  // behind the state's words are clocks
+  own.resize(std::min(own.size(), program_words(*plan.program, state.particles.size())));
   return state_of_checkpoint(std::move(state), *plan.program, own);
 }
 

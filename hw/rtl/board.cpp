@@ -63,6 +63,10 @@ std::vector<int> moved_types(const FixedRule& rule) {
   return types;
 }
 
+bool sets_velocities(const Plan& plan, const BoardChoice& choice) {
+  return choice.velocities && plan.program == nullptr && !moved_types(plan.rule).empty();
+}
+
 uint64_t machine_hash(const Plan& plan) {
   FixedRule rule = plan.rule;
   for (const int k : moved_types(rule)) rule.types[static_cast<size_t>(k)].velocity = {};

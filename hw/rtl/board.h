@@ -33,7 +33,7 @@ const std::vector<std::string>& buses();
 struct BoardChoice {
   std::string name;
   int baud = 1000000;
-  bool velocities = true;  // a host may set those of moved_types(); of a rule of text never
+  bool velocities = true;  // a host may set those of moved_types()
   std::string bus = {};
 };
 
@@ -46,6 +46,8 @@ int bit_clocks16(const Board& board, int baud);
 // The types, ascending, whose velocity a host may set between runs: those held or moved, by place or by
 // force.
 std::vector<int> moved_types(const FixedRule& rule);
+// Whether a host may set any: never of a rule of text, whose nodes have them as constants.
+bool sets_velocities(const Plan& plan, const BoardChoice& choice);
 // The plan's hash with the velocities of these types zero: equal for plans that a bitstream with such
 // velocities can run.
 uint64_t machine_hash(const Plan& plan);

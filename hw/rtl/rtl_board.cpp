@@ -109,7 +109,7 @@ std::string list_with(const std::string& lattice_list, const std::string& folder
 
 std::string print_board_readme(const Plan& plan, const BoardChoice& choice) {
   const Board& board = board_of(choice.name);
-  const bool settable = choice.velocities && !moved_types(plan.rule).empty();
+  const bool settable = sets_velocities(plan, choice);
   return fmt::format(
       R"md(
 ## The board: {0}

@@ -39,7 +39,7 @@ std::map<std::string, std::string> print_bus(const Plan& plan, const RtlDesign& 
 
 std::string print_bus_readme(const Plan& plan, const BoardChoice& choice) {
   const bool axi = choice.bus == "axi4lite";
-  const bool settable = choice.velocities && !moved_types(plan.rule).empty();
+  const bool settable = sets_velocities(plan, choice);
   return fmt::format(
       R"(
 ## The bus: {0}

@@ -182,7 +182,7 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
   if (!board.name.empty()) legalise_board(plan, board);
   if (!board.bus.empty()) legalise_bus(plan, board);
   if (!board.name.empty() || !board.bus.empty())
-    if (board.velocities && !design.text) design.moved = moved_types(plan.rule);
+    if (sets_velocities(plan, board)) design.moved = moved_types(plan.rule);
   return design;
 }
 
@@ -191,8 +191,7 @@ RtlDesign legal_design(const Plan& plan, const Emission& emission) {
 void check_emission(const Plan& plan, const Emission& emission) { legal_design(plan, emission); }
 
 void emit_rtl(const Plan& plan, const State& initial, const std::string& dir, const Emission& emission) {
-  BoardChoice board = emission.board;
-  if (plan.program) board.velocities = false;
+  const BoardChoice& board = emission.board;
   const RtlDesign design = legal_design(plan, emission);
   Files files;
   add_node(files, design, plan);

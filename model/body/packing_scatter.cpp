@@ -11,9 +11,10 @@
 namespace cuboct {
 namespace {
 
-constexpr int kPlaces = 7;   // sections of each axis
-constexpr int kShifts = 16;  // of the packing, across the axis
-constexpr double kMostSites = 1e7;
+constexpr int kPlaces = 7;             // sections of each axis
+constexpr int kShifts = 16;            // of the packing, across the axis
+constexpr double kMostSites = 1e7;     // held against a shape of few parts
+constexpr double kPartsOfASite = 600;  // that take as long again, where a tree finds the nearest
 constexpr double kLeastChange = 0.01;  // of a section that is told
 
 // m, after how much the crystal repeats along a direction of least integers.
@@ -127,12 +128,14 @@ std::optional<PackedSection> packed_section(const PackedShape& packed) {
   const Vec3 extent = bounds.high - bounds.low;
   const double sites = extent.prod() / particle_mass(1, packed.fcc.pitch);
   std::optional<PackedSection> found;
+  if (packed.halves) return found;
+  const double parts = packed.shape ? static_cast<double>(packed.shape->parts()) : 1,
+               most = kMostSites / (1 + parts / kPartsOfASite) / 3 / (kShifts + 1);
   for (int axis = 0; axis < 3; ++axis) {
     const size_t a = static_cast<size_t>(axis);
     if (!packed.along[a] || (!packed.free[(a + 1) % 3] && !packed.free[(a + 2) % 3])) continue;
     const double in_slab = sites * std::min(1.0, period(packed.fcc, *packed.along[a]) / extent[axis]);
-    const int places =
-        static_cast<int>(std::clamp(kMostSites / 3 / (kShifts + 1) / in_slab, 1.0, double{kPlaces}));
+    const int places = static_cast<int>(std::min(most / in_slab, double{kPlaces}));
     std::optional<PackedSection> thinnest;
     for (const Slab& slab : slabs_across(packed, axis, places)) {
       const PackedSection section = section_in(packed, slab);

@@ -18,8 +18,9 @@ struct PackedShape {
   std::array<std::optional<Vec3>, 3> along;
   ShapePtr shape;  // null: the whole box
   Periodic box;    // bounds, as pack() takes them
-  // Axes along which the packing may move: none that repeat, none with a plane of symmetry or a single layer.
+  // Axes along which the packing may move: none that repeat, none with a single layer.
   std::array<bool, 3> free{true, true, true};
+  bool halves = false;  // particles in planes of symmetry stand for half of one: no section is told
 };
 
 // m, between layers of sites across a crystal direction of least integers: a/2 over its length, twice that
@@ -42,9 +43,10 @@ struct PackedSection {
 };
 
 // The thinnest of several inner sections across each axis that a move of the packing changes by a hundredth.
-// None in a box that repeats, with very many layers, or with a whole number of them. None across an axis
-// along which the crystal is turned, or the body has less than two layers. Looks at some 10^7 sites at most:
-// at fewer sections where the body is large.
+// None in a box that repeats, with planes of symmetry, with very many layers, or with a whole number of them.
+// None across an axis along which the crystal is turned, or the body has less than two layers. Looks at 10^7
+// sites at most, of meshes of many triangles at fewer: at fewer sections then, and none where one is too
+// many.
 std::optional<PackedSection> packed_section(const PackedShape& packed);
 
 }  // namespace cuboct

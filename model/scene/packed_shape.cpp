@@ -32,11 +32,7 @@ std::optional<PackedShape> packed_shape(const Scene& scene) {
   const Vec3 size = high - low;
   for (size_t a = 0; a < 3; ++a)
     packed.free[a] = live[a] && !periodic[a] && size[static_cast<Eigen::Index>(a)] > scene.pitch / 4;
-  for (const ConfigTable& plane : root.tables("symmetry")) {
-    const Vec3 normal = plane.at("normal").direction();
-    for (size_t a = 0; a < 3; ++a)
-      if (normal[static_cast<Eigen::Index>(a)] != 0) packed.free[a] = false;
-  }
+  packed.halves = !root.tables("symmetry").empty();
   return packed;
 }
 

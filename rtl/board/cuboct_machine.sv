@@ -68,8 +68,8 @@ module cuboct_machine #(
   logic [63:0]             probe_fault_number_o;
   logic                    unused_probes;
   assign unused_probes = ^{probe_phase_start_o, probe_phase_end_o, probe_observe_valid_o, probe_fault_valid_o,
-                           probe_idle_o, probe_observe_data_o, probe_fault_code_o, probe_fault_stage_o, probe_fault_id_o,
-                           probe_observe_cell_o, probe_fault_cell_o, probe_fault_number_o};
+                           probe_idle_o, probe_observe_data_o, probe_fault_code_o, probe_fault_stage_o,
+                           probe_fault_id_o, probe_observe_cell_o, probe_fault_cell_o, probe_fault_number_o};
   if (MovedTypes > 0) begin : gen_velocities
     cuboct_velocities #(
       .Types(MovedTypes), .Axes(cuboct_pkg::Axes), .Bits(VelocityBits),
@@ -100,7 +100,7 @@ module cuboct_machine #(
   end
   assign fault_tell[IdBits-1:0] = fault_id;
   if (StageBits > 0) begin : gen_stages
-    assign fault_tell[TellBits-1 -: 4] = fault_stage_o;
+    assign fault_tell[TellBits-1 -: StageBits] = fault_stage_o;
   end else begin : gen_no_stages
     logic unused_stages;
     assign fault_stage_o       = '0;

@@ -81,10 +81,10 @@ TEST(Reach, CheckSaysWhatAWideMarginCosts) {
 TEST(Reach, AutomaticFollowsTheMotion) {
   const Bench bench(false);
   const std::string path = dropped(bench, "\"auto\"");
-  EXPECT_EQ(
-      line_of(bench.cuboct({"check", path}).out, "reach"),
-      "reach    2.83 mm around each particle, a cell edge; of 'rubber' x 4.02 mm, y 4.02 mm, -z 50.9 mm to "
-      "'ground', +z 5.74 mm more, by gravity, an impact");
+  EXPECT_EQ(line_of(bench.cuboct({"check", path}).out, "reach"),
+            "reach            2.83 mm around each particle, a cell edge; of 'rubber' x 4.02 mm, y 4.02 mm, "
+            "-z 50.9 mm to "
+            "'ground', +z 5.74 mm more, by gravity, an impact");
   EXPECT_EQ(nlohmann::json::parse(bench.cuboct({"check", path, "--json"}).out)["nodes"]["value"], 1600);
   // It falls, bounces, and the run ends. It strikes at sqrt(2 g h).
   const Answer ran = bench.cuboct({"run", path, "--quiet", "--json"});

@@ -67,6 +67,13 @@ TEST(PackingScatter, NothingChangesWhatRepeatsOrIsTurned) {
   EXPECT_FALSE(packed_section(packed));
 }
 
+// Particles in a plane of symmetry are halves, which the sites do not know.
+TEST(PackingScatter, TellsNothingOfHalves) {
+  PackedShape packed = strip(4.5);
+  packed.halves = true;
+  EXPECT_FALSE(packed_section(packed));
+}
+
 // The mean over places of the packing is the shape's own area, pi r^2.
 TEST(PackingScatter, TheMeanIsTheShapes) {
   PackedShape packed = strip(0);
