@@ -134,7 +134,7 @@ py::dict dict_of(const WholeRun& run) {
   out["stopped"] = trace.stop ? py::cast(trace.stop->text) : py::none();
   out["reached"] = trace.reached ? py::cast(reached_text(trace)) : py::none();
   out["summary"] = run.summary;
-  out["_matter"] = Matter{run.scene, run.wrapped, velocities_late(trace, run.dt)};
+  out["_matter"] = Matter{run.scene, stands_in_box(trace), velocities_late(trace, run.dt)};
   return out;
 }
 

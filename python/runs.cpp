@@ -92,7 +92,6 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   request.keep = [&](const RunState& frame) {
     if (!asked.leave.empty()) last = frame;
     if (const State* state = std::get_if<State>(&frame)) {
-      result.wrapped = true;
       result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin), {}});
     } else {
       const RealFrame& real = std::get<RealFrame>(frame);

@@ -34,9 +34,8 @@ struct WholeRun {
   std::shared_ptr<const Scene> scene;
   Recorded recorded;  // without its frames
   std::vector<Kept> kept;
-  double dt = 0;         // s
-  std::string summary;   // as `cuboct run --json` prints it
-  bool wrapped = false;  // the states' positions stand in the periodic box
+  double dt = 0;        // s
+  std::string summary;  // as `cuboct run --json` prints it
 };
 
 // Throws Interrupted. A run that a fault stopped tells so in its trace.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "cli/run/measured_particles.h"
 #include "cli/run/outputs.h"
 #include "hw/program/options.h"
+#include "model/base/error.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
 
@@ -27,6 +29,11 @@ struct MeasureOptions {
   Answer answer;
 };
 
+bool same_file(const std::string& a, const std::string& b) {
+  const auto whole = [](const std::string& path) { return std::filesystem::weakly_canonical(path); };
+  return whole(std::filesystem::absolute(a)) == whole(std::filesystem::absolute(b));
+}
+
 void measure(const MeasureOptions& options) {
   MeasureAsked asked = options.asked;
   const RunRecord record = read_record(options.directory);
@@ -38,6 +45,9 @@ void measure(const MeasureOptions& options) {
   if (!options.cutoff.empty()) asked.choice.cutoff = size_of("--cutoff", options.cutoff, false, reduced);
   if (!options.volume.empty()) asked.choice.volume = size_of("--volume", options.volume, true, reduced);
   if (!options.out.empty()) check_writable(options.out);
+  if (!options.out.empty() && !options.particles.empty() && same_file(options.out, options.particles))
+    throw InputError(fmt::format("--out and --particles name one file: '{}'", options.particles),
+                     "the table goes to one, each particle's numbers to another");
   std::optional<ParticlesFile> particles;
   SeeParticles see;
   if (!options.particles.empty()) {
@@ -91,8 +101,9 @@ void add_measure(Command& app, int&) {
       .type_name("N")
       .given(options->bins_given);
   command
-      .option("--types", asked.choice.types,
-              "materials. rdf: those of B about those of A; else whose particles count; default: all")
+      .option(
+          "--types", asked.choice.types,
+          "materials. rdf: those of B about those of A; other measures count their particles; default: all")
       .delimiter(',')
       .type_name("A,B");
   command

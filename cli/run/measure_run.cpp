@@ -51,6 +51,9 @@ double velocities_late(const Trace& trace, double dt) {
   return of != trace.notes.end() && of->second == "velocity Verlet" ? 0 : dt / 2;
 }
 
+// The reference engine alone lets positions leave the box, in motion and in static loading.
+bool stands_in_box(const Trace& trace) { return trace.engine != "reference"; }
+
 Measured measure_trace(const Loaded& loaded, const Trace& trace, const MeasureAsked& asked,
                        const SeeParticles& see) {
   const Scene& scene = loaded.scene;
@@ -59,8 +62,9 @@ Measured measure_trace(const Loaded& loaded, const Trace& trace, const MeasureAs
   for (const State& state : trace.frames) steps.push_back(state.step);
   for (const RealFrame& frame : trace.bodies) steps.push_back(frame.step);
   const double late = velocities_late(trace, scene.rule.dt);
+  const bool wrapped = stands_in_box(trace);
   const auto snapshot = [&](size_t k) {
-    Snapshot now{steps[k], {}, !real, late};
+    Snapshot now{steps[k], {}, wrapped, late};
     if (real) {
       const RealFrame& frame = trace.bodies[k];
       now.body.x = frame.x, now.body.v = frame.v, now.body.u = frame.u, now.body.type = scene.body.type;

@@ -26,6 +26,8 @@ using SeeParticles =
 
 // s, from the time of a trace's velocities to that of its positions.
 double velocities_late(const Trace& trace, double dt);
+// Whether positions stand in the periodic box: integers and cells wrap them, whichever frames the trace has.
+bool stands_in_box(const Trace& trace);
 
 // The frames of a run's trace. InputError where it kept none.
 Measured measure_trace(const Loaded& loaded, const Trace& trace, const MeasureAsked& asked,

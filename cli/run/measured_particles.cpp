@@ -18,7 +18,7 @@ class ParticlesFile::Form {
  public:
   virtual ~Form() = default;
   virtual void add(const KeptFrame& kept, const Snapshot& now, const MeasuredParticles& particles) = 0;
-  virtual void remove() = 0;
+  virtual void remove() = 0;  // what is written
 };
 
 namespace {
@@ -79,10 +79,10 @@ enum class Viewer : uint8_t { xyz, packed_xyz, lammps, vtk };
 // The columns of a run's frames, and one more.
 class ViewerForm : public ParticlesFile::Form {
  public:
-  ViewerForm(Viewer viewer, std::string stem, const std::string& path, const Loaded& loaded)
+  // `path`: of VTK without its ending.
+  ViewerForm(Viewer viewer, std::string path, const Loaded& loaded)
       : viewer_(viewer),
-        stem_(std::move(stem)),
-        path_(path),
+        path_(std::move(path)),
         style_(frame_style(loaded.scene)),
         rule_fields_(style_.own.size()),
         maker_(loaded, true) {}
@@ -100,7 +100,7 @@ class ViewerForm : public ParticlesFile::Form {
       field.whole = particles.whole;
       style_.own.push_back(std::move(field));
       if (viewer_ == Viewer::vtk)
-        vtk_.emplace(stem_, style_);
+        vtk_.emplace(path_, style_);
       else if (viewer_ == Viewer::lammps)
         lammps_.emplace(path_, style_);
       else
@@ -115,14 +115,14 @@ class ViewerForm : public ParticlesFile::Form {
     if (!begun_) return;
     vtk_.reset(), lammps_.reset(), xyz_.reset();
     if (viewer_ == Viewer::vtk)
-      remove_vtk(stem_);
+      remove_vtk(path_);
     else
       discard(path_);
   }
 
  private:
   const Viewer viewer_;
-  const std::string stem_, path_;
+  const std::string path_;
   FrameStyle style_;
   const size_t rule_fields_;
   const FrameMaker maker_;
@@ -134,23 +134,24 @@ class ViewerForm : public ParticlesFile::Form {
 
 }  // namespace
 
-ParticlesFile::ParticlesFile(const std::string& path, const Loaded& loaded) : path_(path), loaded_(loaded) {
-  const auto viewer = [&](Viewer kind, const char* ending) {
+ParticlesFile::ParticlesFile(const std::string& path, const Loaded& loaded)
+    : path_(path), temporary_(temporary_beside(path)), loaded_(loaded) {
+  const auto viewer = [&](Viewer kind, const std::string& written) {
     check_writable(path);
-    form_ = std::make_unique<ViewerForm>(kind, path.substr(0, path.size() - std::string(ending).size()), path,
-                                         loaded_);
+    form_ = std::make_unique<ViewerForm>(kind, written, loaded_);
   };
   if (path.ends_with(".csv")) {
     check_writable(path);
-    form_ = std::make_unique<CsvForm>(path, loaded.scene);
+    form_ = std::make_unique<CsvForm>(temporary_, loaded.scene);
   } else if (path.ends_with(".xyz")) {
-    viewer(Viewer::xyz, ".xyz");
+    viewer(Viewer::xyz, temporary_);
   } else if (path.ends_with(".xyz.gz")) {
-    viewer(Viewer::packed_xyz, ".xyz.gz");
+    viewer(Viewer::packed_xyz, temporary_);
   } else if (path.ends_with(".dump.gz")) {
-    viewer(Viewer::lammps, ".dump.gz");
-  } else if (path.ends_with(".pvd")) {
-    viewer(Viewer::vtk, ".pvd");
+    viewer(Viewer::lammps, temporary_);
+  } else if (path.ends_with(".pvd")) {  // a list of files beside it, by their names
+    temporary_.clear();
+    viewer(Viewer::vtk, path.substr(0, path.size() - 4));
   } else {
     throw InputError(fmt::format("--particles: '{}' names no format", path),
                      "by its ending: .csv, .xyz, .xyz.gz, .dump.gz (LAMMPS) or .pvd (ParaView)");
@@ -165,6 +166,9 @@ void ParticlesFile::add(const KeptFrame& kept, const Snapshot& now, const Measur
   form_->add(kept, now, particles);
 }
 
-void ParticlesFile::finish() { finished_ = true; }
+void ParticlesFile::finish() {
+  finished_ = true;
+  if (!temporary_.empty()) rename_whole(temporary_, path_);
+}
 
 }  // namespace cuboct

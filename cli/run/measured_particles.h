@@ -15,7 +15,7 @@ class ParticlesFile {
   // Of its name's ending: .csv; .xyz, .xyz.gz (extended XYZ), .dump.gz (LAMMPS), .pvd (VTK), with all columns
   // of docs/reference/frames.md. InputError where the ending is another, or the file cannot be written.
   ParticlesFile(const std::string& path, const Loaded& loaded);
-  ~ParticlesFile();  // without finish() nothing is left
+  ~ParticlesFile();  // without finish() a file that was there before stays; of .pvd it goes
   ParticlesFile(const ParticlesFile&) = delete;
   ParticlesFile& operator=(const ParticlesFile&) = delete;
 
@@ -25,7 +25,7 @@ class ParticlesFile {
   class Form;
 
  private:
-  std::string path_;
+  std::string path_, temporary_;  // that the form writes, until it is whole; empty of .pvd
   const Loaded& loaded_;
   std::unique_ptr<Form> form_;
   bool finished_ = false;

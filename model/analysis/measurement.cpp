@@ -49,6 +49,14 @@ double within_box(double range, const Periodic& periodic) {
   return range;
 }
 
+std::vector<std::string> material_names(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const ParticleType& type : scene.rule.types)
+    if (const std::string name = material_of(type); std::ranges::find(names, name) == names.end())
+      names.push_back(name);
+  return names;
+}
+
 // By id, whether the particle is of the material.
 std::vector<char> particles_of(const Scene& scene, const std::string& material) {
   const std::vector<std::string> names = material_names(scene);
@@ -427,14 +435,6 @@ std::vector<size_t> chosen_frames(const std::vector<uint64_t>& steps, const std:
   }
   if (chosen.empty()) refuse_frames(text, steps);
   return chosen;
-}
-
-std::vector<std::string> material_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const ParticleType& type : scene.rule.types)
-    if (const std::string name = material_of(type); std::ranges::find(names, name) == names.end())
-      names.push_back(name);
-  return names;
 }
 
 }  // namespace cuboct

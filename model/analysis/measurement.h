@@ -78,7 +78,4 @@ std::unique_ptr<Measure> make_measure(const std::string& name, const Scene& scen
 // to another: "100:", "100:900". InputError where there is no such frame.
 std::vector<size_t> chosen_frames(const std::vector<uint64_t>& steps, const std::string& text);
 
-// Of the scene's names of materials.
-std::vector<std::string> material_names(const Scene& scene);
-
 }  // namespace cuboct

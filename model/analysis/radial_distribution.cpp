@@ -21,10 +21,11 @@ void RdfMeter::add(const std::vector<Vec3>& x) {
   const size_t bins = pairs_.size();
   const double per_width = 1 / (cutoff_ / static_cast<double>(bins));
   const bool all = sets_.a.empty();
-  std::vector<std::vector<uint64_t>> counts(static_cast<size_t>(threads_), std::vector<uint64_t>(bins, 0));
+  std::vector<std::vector<uint64_t>> counts(static_cast<size_t>(threads_));
   for_each_near(x, periodic_, cutoff_, threads_,
                 [&](size_t member, uint32_t i, std::span<const uint32_t> near) {
                   std::vector<uint64_t>& of = counts[member];
+                  if (of.empty()) of.resize(bins);
                   for (auto at = std::upper_bound(near.begin(), near.end(), i); at != near.end(); ++at) {
                     const uint32_t j = *at;
                     const int ways = all ? 2 : (sets_.a[i] && sets_.b[j]) + (sets_.a[j] && sets_.b[i]);
@@ -34,7 +35,7 @@ void RdfMeter::add(const std::vector<Vec3>& x) {
                   }
                 });
   for (const std::vector<uint64_t>& of : counts)
-    for (size_t bin = 0; bin < bins; ++bin) pairs_[bin] += of[bin];
+    for (size_t bin = 0; bin < of.size(); ++bin) pairs_[bin] += of[bin];
   ++frames_;
   particles_ = x.size();
 }
@@ -56,17 +57,34 @@ Rdf RdfMeter::result(double volume) const {
     const double shell = 4.0 / 3 * std::numbers::pi * (end * end * end - r * r * r),
                  pairs = static_cast<double>(pairs_[bin]);
     within += pairs;
-    rdf.g.push_back(density > 0 ? pairs / (frames * density * shell) : 0);
+    const double ideal = frames * density * shell;  // 0 of a shell too thin for any number
+    rdf.g.push_back(ideal > 0 ? pairs / ideal : 0);
     rdf.within.push_back(a > 0 ? within / (frames * a) : 0);
   }
   return rdf;
 }
 
+namespace {
+
+// The bin of the first peak that is at least half as high as the highest; g.size() where all are 0. A shell
+// of a crystal may stand at a bin's end, and rounding part it: a height is that of two bins.
+size_t first_peak(const std::vector<double>& g) {
+  std::vector<double> height(g);
+  for (size_t bin = 0; bin + 1 < g.size(); ++bin) height[bin] += g[bin + 1];
+  const double highest = height.empty() ? 0 : *std::ranges::max_element(height);
+  if (highest == 0) return g.size();
+  size_t bin = 0;
+  while (height[bin] < highest / 2 || (bin + 1 < g.size() && height[bin + 1] > height[bin])) ++bin;
+  return bin + 1 < g.size() && g[bin + 1] > g[bin] ? bin + 1 : bin;
+}
+
+}  // namespace
+
 double first_minimum(const Rdf& rdf) {
-  const auto peak = std::ranges::max_element(rdf.g);
-  if (peak == rdf.g.end() || *peak == 0) return 0;
-  const double last = 1.6 * rdf.middle(static_cast<size_t>(peak - rdf.g.begin()));
-  size_t end = static_cast<size_t>(peak - rdf.g.begin()) + 1;
+  const size_t peak = first_peak(rdf.g);
+  if (peak == rdf.g.size()) return 0;
+  const double last = 1.6 * rdf.middle(peak);
+  size_t end = peak + 1;
   const size_t begin = end;
   while (end < rdf.g.size() && rdf.middle(end) <= last) ++end;
   if (begin == end) return 0;

@@ -48,8 +48,8 @@ class RdfMeter {
   std::vector<uint64_t> pairs_;
 };
 
-// m: the first least value behind the highest one, up to 1.6 times its distance: it parts the first shell of
-// neighbours from the second. 0 where there is none.
+// m: the first least value behind the first peak of half the highest or more, up to 1.6 times its distance:
+// it parts the first shell of neighbours from the second. 0 where there is none.
 double first_minimum(const Rdf& rdf);
 
 }  // namespace cuboct

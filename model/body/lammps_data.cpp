@@ -157,7 +157,15 @@ const AtomStyle& style_by_name(const ParticleText& text, const SectionName& sect
 
 const AtomStyle& atom_style(ParticleText& text, const SectionName& section,
                             const ParticleFileChoice& choice) {
-  if (choice.atom_style) return style_by_name(text, section, *choice.atom_style);
+  if (choice.atom_style) {
+    if (section.comment != *choice.atom_style &&
+        std::ranges::find(kAtomStyles, section.comment, &AtomStyle::name) != std::end(kAtomStyles))
+      text.fail(section.comment,
+                fmt::format("the file states that its atom style is '{}', and 'atom_style' says '{}'",
+                            section.comment, *choice.atom_style),
+                "leave 'atom_style' out");
+    return style_by_name(text, section, *choice.atom_style);
+  }
   if (!section.comment.empty()) return style_by_name(text, section, std::string(section.comment));
   const size_t begin = text.at();
   const size_t columns = words_in(without_comment(next_line(text))).size();

@@ -39,7 +39,7 @@ constexpr ForeignWord kKeys[] = {
     {"thermal_expansion expansion conductivity thermal_conductivity heat_capacity specific_heat",
      "law bond.law material run", "pair laws know no heat; a rule of text does: scenes/rules/heat.toml",
      "heat"},
-    {"lattice structure", "packing", "a packing is face-centred cubic; others stand as [[particle]] entries",
+    {"lattice structure", "packing", "a packing is face-centred cubic; [particles] reads others from a file",
      "bodies"},
     {"dimension dimensions", "", "a flat scene is one layer of particles", "bodies"},
     {"pair_style pair_coeff bond_style", "", "[law] or [rule] has the forces: docs/user/scene.md", ""},

@@ -48,7 +48,7 @@ void CellList::build(std::span<const Vec3> x) {
     origin_[axis] = ring ? periodic_.origin[axis] : low[axis];
     extent[axis] = ring ? periodic_.extent[axis] : high[axis] - low[axis];
     // A cell is a little larger than the range, so that rounding cannot part a pair by two cells.
-    count[axis] = std::max(1.0, std::floor(extent[axis] / (range_ * (1 + 1e-9))));
+    count[axis] = std::clamp(std::floor(extent[axis] / (range_ * (1 + 1e-9))), 1.0, wanted);
   }
   while (count[0] * count[1] * count[2] > wanted) {
     double& most = *std::max_element(count.begin(), count.end());

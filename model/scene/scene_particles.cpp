@@ -240,8 +240,10 @@ void check_file_masses(const FileParticles& of, const std::vector<int>& material
                        const Scene& scene, const std::vector<std::string>& names) {
   constexpr double kOff = 0.01;  // tables of atomic masses differ by less
   const ParticleFile& file = of.file;
-  // Column `masses` is ASE's word: u.
-  const double unit = of.table.reduced() ? 1 : file.data ? of.units.mass : particle_units(0).mass;
+  const bool reduced = of.table.reduced();
+  // Column `masses` is ASE's word: u. It is no unit of a reduced scene, unless the file says that it is.
+  const double ase = !reduced ? particle_units(0).mass : stated_units(file).reduced ? 1 : 0;
+  const double unit = file.data ? of.units.mass : ase;
   if (unit == 0 || (file.mass.empty() && file.kind_mass.empty())) return;
   for (size_t i = 0; i < file.size(); ++i) {
     const double there = unit * (file.mass.empty() ? file.kind_mass[file.kind[i]] : file.mass[i]);
@@ -251,8 +253,9 @@ void check_file_masses(const FileParticles& of, const std::vector<int>& material
     if (there > 0 && std::abs(there / here - 1) > kOff)
       file.text->fail(
           file.at[i],
-          fmt::format("this particle has the mass {:.6g} kg in the file, and {:.6g} kg as '{}' of the scene",
-                      there, here, line_text(names[static_cast<size_t>(m)])),
+          fmt::format("this particle has the mass {:.6g}{} in the file, and {:.6g}{} as '{}' of the scene",
+                      there, reduced ? "" : " kg", here, reduced ? "" : " kg",
+                      line_text(names[static_cast<size_t>(m)])),
           "the scene's 'mass' counts: let both agree to 1 %");
   }
 }

@@ -29,7 +29,9 @@ class Measured(dict[str, NDArray[Any]]):
 
 
 def _options(**given: Any) -> dict[str, Any]:
-    options = {name: value for name, value in given.items() if value is not None and value is not False}
+    for name in ("com", "virial", "particles"):
+        given[name] = True if given[name] else None
+    options = {name: value for name, value in given.items() if value is not None}
     for name in ("cutoff", "volume"):
         if name in options and not isinstance(options[name], str):
             options[name] = float(options[name])
@@ -46,6 +48,8 @@ def _options(**given: Any) -> dict[str, Any]:
 def _frames(frames: Frames) -> str:
     if frames is None or isinstance(frames, str):
         return frames or ""
+    if len(frames) == 0:
+        raise InputError("frames is an empty list: it names no step")
     return ",".join(str(int(step)) for step in frames)
 
 

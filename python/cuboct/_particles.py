@@ -35,7 +35,7 @@ def write_particles(
             raise InputError(f"{len(x)} positions, but {len(v)} velocities")
         columns.append(v)
         names += ":velo:R:3"
-    words = [species] * len(x) if isinstance(species, str) else list(species or ["X"] * len(x))
+    words = [species] * len(x) if isinstance(species, str) else ["X"] * len(x) if species is None else list(species)
     if len(words) != len(x):
         raise InputError(f"{len(x)} positions, but {len(words)} species")
     for word in set(words):
@@ -43,7 +43,11 @@ def write_particles(
             raise InputError(f"species are words without blanks, not {word!r}")
     head = ""
     if box is not None:
+        if not isinstance(periodic, str) or set(periodic) - set("xyz"):
+            raise InputError(f"periodic are axes of 'xyz', not {periodic!r}")
         edges, corner = _rows([box], "box")[0].tolist(), _rows([origin], "origin")[0].tolist()
+        if min(edges) <= 0:
+            raise InputError(f"a box has edges above 0, not {edges}")
         head = 'Lattice="{} 0 0 0 {} 0 0 0 {}" Origin="{} {} {}" '.format(*edges, *corner)
         head += 'pbc="{}" '.format(" ".join("T" if axis in periodic else "F" for axis in "xyz"))
     speed = "reduced" if reduced else "m/s"

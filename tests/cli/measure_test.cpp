@@ -176,11 +176,64 @@ TEST_F(MeasureCommand, RefusesInALine) {
          "--particles: '" + bench_.path("x.txt") +
              "' names no format\n  hint: by its ending: .csv, .xyz, .xyz.gz, .dump.gz (LAMMPS) or .pvd "
              "(ParaView)\n");
-  // A step of a whole period leaves nothing half-written.
   run({"--no-states"});
   expect({"cna"},
          "the run kept no frames\n  hint: 'cuboct run' keeps the first and the last, and without --no-states "
          "in the trace\n");
+}
+
+// A file of that name that was there before stays as it was, and nothing half-written is beside it.
+TEST_F(MeasureCommand, ThatIsRefusedLeavesTheFile) {
+  run();
+  const auto count = [&] { return std::distance(std::filesystem::directory_iterator(bench_.path("")), {}); };
+  const auto refused = [&](const std::string& ending, const Strings& words, const std::string& err) {
+    const std::string file = bench_.path("before" + ending);
+    write_text(file, std::string("mine\n"));
+    const auto before = count();
+    Strings all = words;
+    all.insert(all.end(), {"--particles", file});
+    const test::Answer answer = measure(all);
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.err.substr(0, answer.err.find('\n')), err);
+    EXPECT_EQ(read_text(file), "mine\n") << ending;
+    EXPECT_EQ(count(), before) << ending;
+  };
+  for (const char* ending : {".csv", ".xyz", ".xyz.gz", ".dump.gz", ".pvd"})
+    refused(ending, {"cna", "--frames", "7"}, "no frames '7'");
+  refused(".csv", {"rdf"}, "rdf has nothing of each particle");
+  const std::string same = bench_.path("before.csv");
+  refused(".csv", {"cna", "--out", bench_.path("./before.csv")},
+          "--out and --particles name one file: '" + same + "'");
+  // The whole goes round the box between two frames, and the first was written already.
+  write_text(bench_.path("round.toml"),
+             std::string("units = \"reduced\"\nmass = 1\n[law]\nkind = \"lj\"\nepsilon = 1\nsigma = 1\n"
+                         "cutoff = 2.5\n[box]\nsize = [10, 10, 10]\nperiodic = \"xyz\"\n"
+                         "[[particle]]\nposition = [1, 1, 1]\nvelocity = [4, 0, 0]\n"
+                         "[[particle]]\nposition = [6, 6, 6]\nvelocity = [4, 0, 0]\n"
+                         "[run]\ndt = 0.005\nsteps = 500\n"));
+  const test::Answer round = bench_.cuboct({"run", bench_.path("round.toml"), "--engine", "golden",
+                                            "--frames", "none", "--out", bench_.path("run")});
+  ASSERT_EQ(round.code, 0) << round.err;
+  for (const char* ending : {".csv", ".xyz", ".xyz.gz", ".dump.gz"})
+    refused(
+        ending, {"msd"},
+        "between steps 0 and 500 the whole moves 10 m along x, more than a quarter of the box (10 m): its "
+        "way is not known");
+}
+
+// Integers keep positions in the box, of a rule of text too: nobody goes a whole period in a quarter of a
+// unit of time.
+TEST_F(MeasureCommand, WaysOfARuleOfTextGoThroughTheBox) {
+  std::map<std::string, double> msd;
+  for (const char* engine : {"golden", "reference"}) {
+    const test::Answer answer =
+        bench_.cuboct({"run", "scenes/rules/langevin.toml", "--engine", engine, "--steps", "20",
+                       "--frame-every", "20", "--frames", "none", "--out", bench_.path("run")});
+    ASSERT_EQ(answer.code, 0) << answer.err;
+    msd[engine] = table({"msd"}).at("msd").back();
+  }
+  EXPECT_GT(msd["reference"], 0.01);
+  EXPECT_NEAR(msd["golden"], msd["reference"], 1e-3 * msd["reference"]);
 }
 
 // A body with free surfaces: g(r) and stress are over the packing's volume, and say so; its units are in the

@@ -49,6 +49,12 @@ class Measures(unittest.TestCase):
         self.assertEqual(few["msd"].tolist(), columns(self.out, "msd", "--frames", "20:", "--com")["msd"])
         self.assertEqual(few.units["msd"], "m^2")
         self.assertIn("frames", few.notes)
+        self.assertEqual(len(self.run_.measure("cna", com=np.bool_(False), virial=0)["fcc"]), 3)
+        found = {
+            engine: cuboct.run(scene_file("rules/langevin.toml"), engine, steps=20, frame_every=20).measure("msd")["msd"][-1]
+            for engine in ("golden", "reference")
+        }
+        self.assertAlmostEqual(found["golden"] / found["reference"], 1, delta=1e-3)
 
     def test_displacements_are_those_of_numpy(self):
         found = self.run_.measure("msd", particles=True)
@@ -75,6 +81,7 @@ class Measures(unittest.TestCase):
             ({"what": "rdf", "cutoff": -1.0}, "cutoff = -1: it is above 0"),
             ({"what": "rdf", "cutoff": "1 mm"}, "cutoff: '1 mm' is not a number: the scene has reduced units"),
             ({"what": "rdf", "bins": 0}, "bins = 0: 1 to 1000000"),
+            ({"what": "cna", "frames": []}, "frames is an empty list: it names no step"),
             ({"what": "rdf", "particles": True}, "rdf has nothing of each particle"),
         ):
             with self.assertRaises(cuboct.InputError) as raised:

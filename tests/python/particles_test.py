@@ -50,6 +50,14 @@ class Particles(unittest.TestCase):
         changed["run"]["steps"] = 10
         self.assertEqual(cuboct.run(changed, "lattice").hash, cuboct.run(changed, "golden").hash)
 
+    def test_species_of_numpy(self):
+        texts = []
+        for species in (["A", "B"] * (len(self.x) // 2), np.array(["A", "B"] * (len(self.x) // 2))):
+            cuboct.write_particles(self.path, self.x, species=species)
+            with open(self.path, encoding="utf-8") as file:
+                texts.append(file.read())
+        self.assertEqual(texts[0], texts[1])
+
     def test_without_velocities_and_box(self):
         cuboct.write_particles(self.path, self.x / 3.4e-10, reduced=True)
         law = {"kind": "lj", "epsilon": 1, "sigma": 1, "cutoff": 1.6}
@@ -72,6 +80,13 @@ class Particles(unittest.TestCase):
         with self.assertRaises(cuboct.InputError) as refused:
             cuboct.write_particles(self.path, self.x, species="soft glue")
         self.assertEqual(refused.exception.message, "species are words without blanks, not 'soft glue'")
+        for options, message in (
+            ({"periodic": "XYZ"}, "periodic are axes of 'xyz', not 'XYZ'"),
+            ({"box": [1, 0, 1]}, "a box has edges above 0, not [1.0, 0.0, 1.0]"),
+        ):
+            with self.assertRaises(cuboct.InputError) as refused:
+                cuboct.write_particles(self.path, self.x, **{"box": [EDGE] * 3, **options})
+            self.assertEqual(refused.exception.message, message)
         self.assertEqual(os.listdir(self.folder), [])
         with open(self.path, "w", encoding="utf-8") as file:
             file.write("1\n\nA 1 2 x\n")

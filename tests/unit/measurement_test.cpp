@@ -146,6 +146,40 @@ TEST(Rdf, TheFirstMinimumPartsTheShells) {
   EXPECT_EQ(first_minimum({0.1, {}, {0, 0, 0}, {}}), 0);
 }
 
+// The second shell of diamond has 12 at a distance of 1.63 bonds: g(r) is higher there than at the first. Of
+// the simple cubic crystal both are as high.
+TEST(Rdf, TheFirstShellNeedNotBeTheHighest) {
+  const std::vector<Vec3> face{{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}};
+  std::vector<Vec3> diamond = face;
+  for (const Vec3& site : face) diamond.push_back(site + Vec3::Constant(0.25));
+  const auto neighbours = [](const Crystal& of) {
+    Scene scene;
+    scene.periodic = of.box;
+    scene.body.x = of.x;
+    scene.body.type.assign(of.x.size(), 0);
+    const std::unique_ptr<Measure> measure = make_measure("coordination", scene, {});
+    Snapshot now;
+    now.body = scene.body;
+    measure->add(now);
+    return measure->particles()->values;
+  };
+  const Crystal of_diamond = crystal(Vec3::Ones(), diamond, {4, 4, 4});
+  EXPECT_EQ(neighbours(of_diamond), std::vector<double>(of_diamond.x.size(), 4));
+  for (const int cells : {6, 8, 9}) {  // of 8 the first shell stands at a bin's end
+    const Crystal cubic = crystal(Vec3::Ones(), {Vec3::Zero()}, {cells, cells, cells});
+    EXPECT_EQ(neighbours(cubic), std::vector<double>(cubic.x.size(), 6)) << cells;
+  }
+}
+
+TEST(Rdf, OfACutoffWithoutVolumeIsZero) {
+  const Crystal perfect = fcc(2);
+  for (const double cutoff : {1e-310, 1e-110, 1e-100}) {
+    RdfMeter meter(perfect.box, cutoff, 2, {}, 1);
+    meter.add(perfect.x);
+    EXPECT_EQ(meter.result(perfect.box.extent.prod()).g, (std::vector<double>{0, 0})) << cutoff;
+  }
+}
+
 TEST(Rdf, IsThatOfAnyThreads) {
   Body body = test::fcc_block(14, 1);  // 10,976 particles: several parts
   test::shake(body, 0.1, 0, 5);

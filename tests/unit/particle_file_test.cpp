@@ -127,8 +127,14 @@ TEST_F(ParticleFiles, OfLammpsAreInTheOrderOfTheirIdsAndInTheBox) {
     write("b.data", head + "\nAtoms\n\n" + rest);
     EXPECT_EQ(scene("file = \"b.data\"\natom_style = \"" + style + "\"\n").body.x, hinted.body.x) << style;
   }
+  write("b.data", "about\n1 atoms\n1 atom types\nAtoms # full\n\n4 9 1 0.5 1 2 3\n");
+  EXPECT_EQ(scene("file = \"b.data\"\natom_style = \"full\"\n").body.x, (std::vector<Vec3>{{1, 2, 3}}));
+  EXPECT_EQ(refused("file = \"b.data\"\natom_style = \"sphere\"\n"),
+            "b.data:4:9: the file states that its atom style is 'full', and 'atom_style' says 'sphere'\n"
+            "  hint: leave 'atom_style' out");
+  write("b.data", "about\n1 atoms\n1 atom types\nAtoms\n\n4 1 1 2 3\n");
   EXPECT_EQ(refused("file = \"b.data\"\natom_style = \"full\"\n"),
-            "b.data:11:11: 5 columns: a line of atom style 'full' has 7, or 10 with image flags");
+            "b.data:6:10: 5 columns: a line of atom style 'full' has 7, or 10 with image flags");
   write("b.data", "about\n1 atoms\n1 atom types\nAtoms\n\n4 9 1 1 2 3\n");
   EXPECT_EQ(
       refused("file = \"b.data\"\n"),
@@ -236,10 +242,22 @@ TEST_F(ParticleFiles, AreOfTheirMaterials) {
             "a.toml:19:48: the file has no 'Xe'\n  hint: it has Ar, Kr");
   // Masses of LAMMPS's types, of the materials they are.
   write("a.data", kData);
-  EXPECT_EQ(
-      refused("file = \"a.data\"\nmaterials = { 1 = \"argon\", 2 = \"soft glue\" }\n", materials),
-      "a.data:22:5: this particle has the mass 1.005 kg in the file, and 2 kg as 'soft glue' of the scene\n"
-      "  hint: the scene's 'mass' counts: let both agree to 1 %");
+  EXPECT_EQ(refused("file = \"a.data\"\nmaterials = { 1 = \"argon\", 2 = \"soft glue\" }\n", materials),
+            "a.data:22:5: this particle has the mass 1.005 in the file, and 2 as 'soft glue' of the scene\n"
+            "  hint: the scene's 'mass' counts: let both agree to 1 %");
+  // Nobody says what one of the file's masses is in units of the scene.
+  EXPECT_EQ(scene("file = \"a.data\"\nunits = { length = 1, velocity = 1 }\n"
+                  "materials = { 1 = \"argon\", 2 = \"soft glue\" }\n",
+                  materials)
+                .body.size(),
+            3u);
+  const std::string columns = "Properties=species:S:1:pos:R:3:masses:R:1";
+  write("b.xyz", "1\n" + columns + "\nargon 1 2 3 39.95\n");
+  EXPECT_EQ(scene("file = \"b.xyz\"\n").body.size(), 1u);
+  write("b.xyz", "1\n" + columns + " units=\"pos:reduced\"\nargon 1 2 3 39.95\n");
+  EXPECT_EQ(refused("file = \"b.xyz\"\n"),
+            "b.xyz:3:7: this particle has the mass 39.95 in the file, and 1 as 'matter' of the scene\n"
+            "  hint: the scene's 'mass' counts: let both agree to 1 %");
 }
 
 TEST_F(ParticleFiles, BringABox) {
