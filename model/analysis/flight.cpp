@@ -71,4 +71,9 @@ void Flight::stop(int axis, int side, double distance, double speed) {
   most_speed_[axis] = std::min(most_speed_[axis], speed);
 }
 
+void Flight::drop_stop(int axis, int side) {
+  (side == 0 ? stop_low_ : stop_high_)[axis] = INFINITY;
+  most_speed_[axis] = INFINITY;
+}
+
 }  // namespace cuboct

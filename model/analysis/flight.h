@@ -33,6 +33,8 @@ class Flight {
   // Something stands in the way along an axis: no place is further from the start than `distance`, m, below
   // (side 0) or above (side 1), and no speed along the axis is above `speed`, m/s.
   void stop(int axis, int side, double distance, double speed);
+  // From the latest hit on nothing stands there any more, nor bounds speeds along the axis.
+  void drop_stop(int axis, int side);
 
  private:
   Ranges places(double t) const;  // at t alone, before stops

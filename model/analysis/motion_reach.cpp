@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "model/analysis/motion.h"
 #include "model/analysis/pieces.h"
@@ -42,11 +43,18 @@ void widen(Ranges& bounds, int axis, double low, double high) {
   bounds.low[axis] = std::min(bounds.low[axis], low), bounds.high[axis] = std::max(bounds.high[axis], high);
 }
 
+// Of a piece by a wall, below (side 0) or above.
+struct Stop {
+  const Piece* wall;
+  int axis, side;
+};
+
 struct Moving {
   const Piece* piece;
   Flight flight;
   Ranges sway;  // m, beside the flight
   bool tumbles = false, breaks = false;
+  std::vector<Stop> stops;
   PieceReach found;
 
   void because(const std::string& reason) {
@@ -67,7 +75,7 @@ class Motions {
     spacing_ = motion_.rest_distance;
     strain_ = strongest_strain(scene, spacing_);
     for (const Piece& piece : pieces)
-      all_.push_back({.piece = &piece, .flight = {}, .sway = {}, .found = {}});
+      all_.push_back({.piece = &piece, .flight = {}, .sway = {}, .stops = {}, .found = {}});
   }
 
   std::vector<PieceReach> found() {
@@ -98,20 +106,24 @@ class Motions {
     const Piece& piece = *m.piece;
     m.found.name = piece.name, m.found.pieces = piece.pieces, m.found.duration = duration_;
     if (piece.pieces > 1 && !piece.driven && !is_static()) return begin_loose(m);
-    if (piece.driven) {
-      m.flight = Flight(piece.led, Vec3::Zero());
-      if (!piece.led.zero()) m.because("the imposed velocity");
-      if (piece.fixed) return;
-      load(m);
-      break_led(m);
-    } else if (!is_static()) {
-      m.flight = Flight({piece.velocity, piece.velocity}, piece.acceleration);
-      if (!piece.velocity.isZero(0)) m.because("the initial velocity");
-      if (!piece.acceleration.isZero(0)) m.because(piece.pulled ? "the force" : "gravity");
-      m.found.spin = piece.spin, m.found.centre = piece.centre;
-      if (!piece.spin.isZero(0)) m.because("the rotation");
+    Ranges v = piece.led;
+    Vec3 g = Vec3::Zero();
+    if (!v.zero()) m.because("the imposed velocity");
+    bool moves = false;
+    for (int axis = 0; axis < 3 && !is_static(); ++axis) {
+      if (piece.steers(axis)) continue;
+      v.low[axis] = v.high[axis] = piece.velocity[axis], g[axis] = piece.acceleration[axis];
+      moves = moves || piece.velocity[axis] != 0;
     }
-    if (!is_static()) inner(m);
+    m.flight = Flight(v, g);
+    if (piece.fixed) return;
+    if (moves) m.because("the initial velocity");
+    if (!g.isZero(0)) m.because(piece.pulled ? "the force" : "gravity");
+    if (piece.driven) load(m), break_led(m);
+    if (is_static()) return;
+    m.found.spin = piece.spin, m.found.centre = piece.centre;
+    if (!piece.spin.isZero(0)) m.because("the rotation");
+    inner(m);
   }
 
   // Many pieces that meet one another go anywhere at the speed of the fastest.
@@ -124,10 +136,12 @@ class Motions {
     if (!piece.acceleration.isZero(0)) m.because(piece.pulled ? "the force" : "gravity");
   }
 
-  // What gravity and forces do to a piece that is held or led.
+  // What gravity and forces do to a piece along axes along which it is held or led.
   void load(Moving& m) {
     const Piece& piece = *m.piece;
-    const Vec3& a = piece.acceleration;
+    Vec3 a = piece.acceleration;
+    for (int axis = 0; axis < 3; ++axis)
+      if (!piece.steers(axis)) a[axis] = 0;
     if (a.isZero(0)) return;
     m.because(piece.pulled ? "the force" : "gravity");
     const double modulus = kSoftest * wave() * wave(), length = piece.size().maxCoeff() + spacing_;
@@ -135,10 +149,11 @@ class Motions {
     for (int axis = 0; axis < 3; ++axis) {
       if (a[axis] == 0) continue;
       const double g = std::abs(a[axis]), h = piece.size()[axis] + spacing_;
+      const Piece::Hold& hold = piece.hold[static_cast<size_t>(axis)];
       double l = 0, across = 0;
       for (int b = 0; b < 3; ++b) {
         if (b == axis) continue;
-        l = std::max({l, piece.held_low[b] - piece.low[b], piece.high[b] - piece.held_high[b]});
+        l = std::max({l, hold.low[b] - piece.low[b], piece.high[b] - hold.high[b]});
         across = std::max(across, piece.size()[b]);
       }
       // Held at both ends: no softer than a cantilever of half the length.
@@ -149,7 +164,7 @@ class Motions {
         strain = std::max(strain, 3 * g * l * l / (modulus * h));
       }
       if (!is_static() && strain > strain_) {  // it tears off
-        m.flight = Flight(piece.led, a);
+        m.flight = Flight(m.flight.velocity(0), a + m.flight.acceleration());
         m.breaks = true;
         return;
       }
@@ -179,7 +194,8 @@ class Motions {
   void inner(Moving& m) {
     const Piece& piece = *m.piece;
     Vec3 speed = piece.inner;
-    if (piece.driven && !scene_.thermal) speed += piece.velocity.cwiseAbs();
+    for (int axis = 0; axis < 3 && !scene_.thermal; ++axis)
+      if (piece.steers(axis)) speed[axis] += std::abs(piece.velocity[axis]);
     // A rotation strains by (V/c)^2, V the speed of its rim.
     const double rim = 0.5 * piece.spin.norm() * piece.size().norm();
     const bool flies = (scene_.thermal ? piece.inner_rms > kMelts * wave() : breaks(speed.norm())) ||
@@ -193,7 +209,7 @@ class Motions {
     }
     for (int axis = 0; axis < 3; ++axis) {
       const double most = scene_.thermal ? 0 : swing(piece, axis, speed[axis]);
-      if (most > 0) m.because(piece.driven ? "the initial velocity" : "the initial velocities");
+      if (most > 0) m.because(piece.steers(axis) ? "the initial velocity" : "the initial velocities");
       widen(m.sway, axis, -most, most);
     }
   }
@@ -270,13 +286,34 @@ class Motions {
     answer(b, a, meeting, !meeting.first_strikes, upwards);
   }
 
+  // Where the wall is on a piece's way along the axis, wherever the piece flies across it until the end.
+  std::optional<Gap> gap_on_way(const Moving& m, const Piece& wall, int axis, int side) const {
+    const Ranges way = m.until(duration_);
+    const auto ends = [&](int across) {
+      std::vector<double> both;
+      if (way.low[across] < 0) both.push_back(way.low[across]);
+      if (way.high[across] > 0 || both.empty()) both.push_back(way.high[across]);
+      return both;
+    };
+    const int p = (axis + 1) % 3, q = (axis + 2) % 3;
+    Gap all{INFINITY, 0};
+    for (const double of_p : ends(p))
+      for (const double of_q : ends(q)) {
+        Vec3 drift = Vec3::Zero();
+        drift[p] = of_p, drift[q] = of_q;
+        const auto gap = gap_to(scene_.body.x, m.piece->ids, wall.ids, axis, side, drift, spacing_);
+        if (!gap) return std::nullopt;
+        all = {std::min(all.least, gap->least), std::max(all.most, gap->most)};
+      }
+    return all;
+  }
+
   // Where the wall stops the piece. What falls towards it comes the faster the further it is: sqrt(v^2 + 2 g
   // d).
   void stop(Moving& m, const Moving& wall, int axis, Vec3& speed) {
-    const Vec3 drift = (m.piece->velocity + 0.5 * duration_ * m.flight.acceleration()) * duration_;
     const int side =
         m.piece->low[axis] + m.piece->high[axis] > wall.piece->low[axis] + wall.piece->high[axis] ? 0 : 1;
-    const auto gap = gap_to(scene_.body.x, m.piece->ids, wall.piece->ids, axis, side, drift, spacing_);
+    const auto gap = gap_on_way(m, *wall.piece, axis, side);
     if (!gap) {
       m.tumbles = true;
       return;
@@ -286,7 +323,26 @@ class Motions {
         speed[axis], std::sqrt(std::pow(m.piece->velocity[axis], 2) + 2 * std::max(0.0, g) * gap->least));
     const bool whole = !m.breaks && !breaks(speed.norm());
     m.flight.stop(axis, side, whole ? gap->least : gap->most, speed[axis]);
+    m.stops.push_back({wall.piece, axis, side});
     m.found.stopped_by[static_cast<size_t>(axis)][static_cast<size_t>(side)] = wall.piece->name;
+  }
+
+  // Drops the stops that a blow carries a piece past. A wall that has stopped it is on its way as it bounces.
+  void keep_stops(Moving& m, const Moving& by) {
+    const auto past = [&](const Stop& stop) {
+      return stop.wall != by.piece && !gap_on_way(m, *stop.wall, stop.axis, stop.side);
+    };
+    // Each that goes may make the way wider.
+    for (auto lost = std::ranges::find_if(m.stops, past); lost != m.stops.end();
+         lost = std::ranges::find_if(m.stops, past)) {
+      const Stop gone = *lost;
+      m.stops.erase(lost);
+      const auto at = [&](const Stop& stop) { return stop.axis == gone.axis && stop.side == gone.side; };
+      m.tumbles = true;
+      if (std::ranges::any_of(m.stops, at)) continue;
+      m.flight.drop_stop(gone.axis, gone.side);
+      m.found.stopped_by[static_cast<size_t>(gone.axis)][static_cast<size_t>(gone.side)].clear();
+    }
   }
 
   // What an impact does to one of the two, which it pushes up or down along the normal.
@@ -297,25 +353,26 @@ class Motions {
     const double rest = duration_ - at.t;
     Ranges v = m.flight.velocity(at.t);
     const double sign = up ? 1 : -1;
-    const auto push = [&](double ahead, double back, double across) {
+    const auto push = [&](double ahead, double back, const Vec3& across) {
       for (int a = 0; a < 3; ++a)
         if (a != at.axis)
-          v.low[a] -= across, v.high[a] += across;
+          v.low[a] -= across[a], v.high[a] += across[a];
         else
           (up ? v.high[a] : v.low[a]) += sign * ahead, (up ? v.low[a] : v.high[a]) -= sign * back;
     };
     if (breaks(at.speed) || m.breaks) {
       if (strikes)
-        push(at.speed * (1 + kBack), 0, kAcross * at.speed);
+        push(at.speed * (1 + kBack), 0, Vec3::Constant(kAcross * at.speed));
       else
-        push(kAhead * at.speed, kBack * at.speed, kAcross * at.speed);
+        push(kAhead * at.speed, kBack * at.speed, Vec3::Constant(kAcross * at.speed));
       m.breaks = true;
       m.flight.hit(at.t, v);
+      keep_stops(m, by);
       return;
     }
-    const bool heavy = by.piece->driven;
+    const bool heavy = by.piece->steers(at.axis);
     const double share = is_static() ? 1 : heavy ? 2 : 2 * by.piece->mass / (by.piece->mass + piece.mass);
-    if (piece.driven) {
+    if (piece.steers(at.axis)) {
       // What is led goes on pushing; what is free bounces off.
       const double pushed = heavy ? at.normal * rest : 0,
                    swings =
@@ -325,8 +382,12 @@ class Motions {
             up ? std::max(pushed, swings) : swings);
       return;
     }
-    push(share * at.normal, 0, is_static() ? 0 : kAcrossWhole * at.speed);
+    Vec3 across = Vec3::Constant(is_static() ? 0 : kAcrossWhole * at.speed);
+    for (int a = 0; a < 3; ++a)
+      if (piece.steers(a)) across[a] = 0;
+    push(share * at.normal, 0, across);
     m.flight.hit(at.t, v);
+    keep_stops(m, by);
     if (!is_static() && off_middle(piece, at.axis, up ? 0 : 1)) m.tumbles = true;
   }
 
@@ -338,18 +399,23 @@ class Motions {
     for (const uint32_t i : piece.ids)
       if (std::abs(scene_.body.x[i][axis] - face) <= spacing_) sum += scene_.body.x[i], ++count;
     Vec3 off = sum / count - piece.centre;
-    off[axis] = 0;
+    // Off along an axis it turns along that and the normal.
+    for (int a = 0; a < 3; ++a)
+      if (a == axis || piece.steers(a)) off[a] = 0;
     return off.norm() > 0.5 * spacing_;
   }
 
   void end(Moving& m) {
     const Piece& piece = *m.piece;
     m.found.beyond = piece.fixed ? Ranges{} : m.until(duration_);
-    if (!m.tumbles || piece.driven) return;
+    int free = 0;
+    for (int a = 0; a < 3; ++a) free += piece.steers(a) ? 0 : 1;
+    if (!m.tumbles || free < 2) return;
     m.because("tumbling");
     const double radius = 0.5 * piece.size().norm();
     const Vec3 more = Vec3::Constant(radius) - 0.5 * piece.size();
     for (int a = 0; a < 3; ++a) {
+      if (piece.steers(a)) continue;
       if (m.found.stopped_by[a][0].empty()) m.found.beyond.low[a] -= more[a];
       if (m.found.stopped_by[a][1].empty()) m.found.beyond.high[a] += more[a];
     }

@@ -7,18 +7,19 @@
 // modulus over density in the softest direction of a packing, L a piece's longest side, h its side along the
 // motion, e the strain at which its law pulls most, u the speed at which two pieces meet.
 //
-// Flight of a piece of which nothing is held or led: the range of v t + g t^2/2 up to T, by axis. v is its
-// mean velocity, g its mean acceleration by gravity and forces.
+// Flight along an axis along which no particle of a piece is held or led: the range of v t + g t^2/2 up to T.
+// v is the piece's mean velocity, g its mean acceleration by gravity and forces.
 //
-// Rotation of such a piece: each particle stays on its circle about the centre of mass, as far as it turns in
-// T.
+// Rotation about an axis, where nothing holds or leads the piece along the other two: each particle stays on
+// its circle about the centre of mass, as far as it turns in T.
 //
 // What is led: V T. Where max(V/c, V T/L) is above e it breaks and springs back: e L along V, e L/2 across.
 //
-// A load on a piece of which some is held or led, with the mean acceleration a: a stretch of a h^2/(2 Y), and
-// the bending of what reaches l beyond the held part, 1.5 a l^4/(Y h^2) (Euler and Bernoulli's cantilever);
-// of a force, which may act at the end, 4 a l^4/(Y h^2). Twice that, as of a load that comes at once. No more
-// than a T^2/2, nor than 2 L. Where a h/Y or 3 a l^2/(Y h) is above e the piece tears off, and flies.
+// A load along an axis along which some of a piece is held or led, with the mean acceleration a: a stretch of
+// a h^2/(2 Y), and the bending of what reaches l beyond the held part, 1.5 a l^4/(Y h^2) (Euler and
+// Bernoulli's cantilever); of a force, which may act at the end, 4 a l^4/(Y h^2). Twice that, as of a load
+// that comes at once. No more than a T^2/2, nor than 2 L. Where a h/Y or 3 a l^2/(Y h) is above e the piece
+// tears off, and flies.
 //
 // Inner velocities v, which no rigid body has, and those of a held piece: 2 v L^2/(c h), twice the speed over
 // the frequency of the slowest bending, no more than v T. Each particle flies at its own velocity where v/c
@@ -32,7 +33,8 @@
 // scenes/templates/impact.toml: 2.2, 0 and 0.65); what strikes loses up to 1.25 u, and gets u across.
 //
 // A stop: a piece that is held as a whole, along all axes, ends what comes along an axis, where the shadow of
-// what comes falls wholly on it.
+// what comes falls wholly on it, wherever flight takes it across the axis until T. A later blow that takes it
+// past the wall ends the stop.
 //
 // Static loading has no flights: paths of what is led, loads without doubling, and breaks are left.
 #pragma once

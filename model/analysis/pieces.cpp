@@ -10,15 +10,17 @@
 
 #include "model/analysis/clusters.h"
 #include "model/analysis/crack.h"
+#include "model/analysis/motion.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
 namespace {
 
 constexpr std::array kEveryAxis{true, true, true};
-constexpr std::array kNoAxis{false, false, false};
 
-bool steered(const ParticleType& type) { return type.pd || type.imposed != kNoAxis; }
+bool is_fixed(const ParticleType& type) { return type.imposed == kEveryAxis && type.velocity.isZero(0); }
+
+bool free_somewhere(const ParticleType& type) { return !type.pd && type.imposed != kEveryAxis; }
 
 std::vector<std::vector<double>> squared_reaches(const Rule& rule) {
   const int count = static_cast<int>(rule.types.size());
@@ -48,38 +50,63 @@ Clusters connected(const Scene& scene) {
   return clusters;
 }
 
-// The motion of a rigid body that is nearest to the particles': least squares, by mass.
-void read_velocities(const Scene& scene, Piece& piece) {
+// Of each particle that is free along some axis: its type, mass, place and velocity.
+void over_free(const Scene& scene, const Piece& piece, auto see) {
   const Body& body = scene.body;
-  const auto each_free = [&](auto see) {
-    for (const uint32_t i : piece.ids)
-      if (!steered(scene.rule.types[body.type[i]]))
-        see(scene.rule.mass_of(body.type[i]), body.x[i], body.v[i]);
-  };
-  double mass = 0, count = 0;
-  each_free([&](double m, const Vec3& x, const Vec3& v) {
-    if (count == 0) piece.velocities = {v, v};
-    mass += m, ++count, piece.centre += m * x, piece.velocity += m * v;
-    piece.velocities.low = piece.velocities.low.cwiseMin(v);
-    piece.velocities.high = piece.velocities.high.cwiseMax(v);
+  for (const uint32_t i : piece.ids)
+    if (const ParticleType& type = scene.rule.types[body.type[i]]; free_somewhere(type))
+      see(type, scene.rule.mass_of(body.type[i]), body.x[i], body.v[i]);
+}
+
+// Along each axis of the particles that are free along it: their mean by mass, and bounds.
+void read_means(const Scene& scene, Piece& piece) {
+  Vec3 masses = Vec3::Zero();
+  double mass = 0;
+  over_free(scene, piece, [&](const ParticleType& type, double m, const Vec3& x, const Vec3& v) {
+    mass += m, piece.centre += m * x;
+    for (int a = 0; a < 3; ++a) {
+      if (!is_free(type, a)) continue;
+      if (masses[a] == 0) piece.velocities.low[a] = piece.velocities.high[a] = v[a];
+      masses[a] += m, piece.velocity[a] += m * v[a];
+      piece.velocities.low[a] = std::min(piece.velocities.low[a], v[a]);
+      piece.velocities.high[a] = std::max(piece.velocities.high[a], v[a]);
+    }
   });
-  if (mass == 0) return;
-  piece.centre /= mass, piece.velocity /= mass;
+  if (mass > 0) piece.centre /= mass;
+  for (int a = 0; a < 3; ++a)
+    if (masses[a] > 0) piece.velocity[a] /= masses[a];
+}
+
+// The rotation that is nearest to the particles' velocities: least squares, by mass. A piece turns about an
+// axis where nothing holds it along the other two. In a box that repeats a rotation means nothing.
+Vec3 spin_of(const Scene& scene, const Piece& piece) {
+  if (!scene.periodic.extent.isZero(0)) return Vec3::Zero();
   Vec3 turning = Vec3::Zero();
   Mat3 inertia = Mat3::Zero();
-  each_free([&](double m, const Vec3& x, const Vec3& v) {
+  over_free(scene, piece, [&](const ParticleType&, double m, const Vec3& x, const Vec3& v) {
     const Vec3 r = x - piece.centre;
     turning += m * r.cross(v - piece.velocity);
     inertia += m * (r.squaredNorm() * Mat3::Identity() - r * r.transpose());
   });
-  // A rotation in a box that repeats means nothing.
-  if (scene.periodic.extent.isZero(0)) piece.spin = inertia.completeOrthogonalDecomposition().solve(turning);
-  double squares = 0;
-  each_free([&](double, const Vec3& x, const Vec3& v) {
-    const Vec3 left = v - piece.velocity - piece.spin.cross(x - piece.centre);
+  for (int a = 0; a < 3; ++a)
+    if (piece.steers((a + 1) % 3) || piece.steers((a + 2) % 3))
+      turning[a] = 0, inertia.row(a).setZero(), inertia.col(a).setZero();
+  return inertia.completeOrthogonalDecomposition().solve(turning);
+}
+
+// The motion of a rigid body that is nearest to the particles', and what it leaves.
+void read_velocities(const Scene& scene, Piece& piece) {
+  read_means(scene, piece);
+  piece.spin = spin_of(scene, piece);
+  double squares = 0, count = 0;
+  over_free(scene, piece, [&](const ParticleType& type, double, const Vec3& x, const Vec3& v) {
+    Vec3 left = v - piece.velocity - piece.spin.cross(x - piece.centre);
+    for (int a = 0; a < 3; ++a)
+      if (!is_free(type, a)) left[a] = 0;
     piece.inner = piece.inner.cwiseMax(left.cwiseAbs());
-    squares += left.squaredNorm();
+    squares += left.squaredNorm(), ++count;
   });
+  if (count == 0) return;
   piece.inner_rms = std::sqrt(squares / count);
   // What rounding leaves of a fit is no motion.
   const double least =
@@ -94,70 +121,93 @@ void read_facts(const Scene& scene, Piece& piece) {
   const std::string& name = types[scene.body.type[piece.ids.front()]].name;
   piece.name = name.substr(0, name.find('/'));
   piece.fixed = true;
-  bool first = true, all_led = true;
-  double free_mass = 0;
+  Vec3 free_mass = Vec3::Zero();
   for (const uint32_t i : piece.ids) {
     const Vec3& x = scene.body.x[i];
     const ParticleType& type = types[scene.body.type[i]];
     const double mass = scene.rule.mass_of(scene.body.type[i]);
     piece.mass += mass;
     piece.low = piece.low.cwiseMin(x), piece.high = piece.high.cwiseMax(x);
-    piece.fixed = piece.fixed && type.imposed == kEveryAxis && type.velocity.isZero(0);
-    if (!steered(type)) {
-      all_led = false;
-      free_mass += mass, piece.acceleration += mass * type.gravity;
+    piece.fixed = piece.fixed && is_fixed(type);
+    if (free_somewhere(type)) {
       piece.most_acceleration = std::max(piece.most_acceleration, type.gravity.norm());
       piece.pulled = piece.pulled || !type.pull.isZero(0);
-      continue;
     }
-    piece.driven = true;
-    piece.held_low = piece.held_low.cwiseMin(x), piece.held_high = piece.held_high.cwiseMax(x);
-    if (first) piece.led = {type.velocity, type.velocity};
-    first = false;
-    piece.led.low = piece.led.low.cwiseMin(type.velocity);
-    piece.led.high = piece.led.high.cwiseMax(type.velocity);
-    piece.fastest_led = std::max(piece.fastest_led, type.velocity.norm());
+    for (int a = 0; a < 3; ++a) {
+      if (is_free(type, a)) {
+        free_mass[a] += mass, piece.acceleration[a] += mass * type.gravity[a];
+        continue;
+      }
+      piece.driven = true;
+      Piece::Hold& hold = piece.hold[static_cast<size_t>(a)];
+      if (!hold.any) piece.led.low[a] = piece.led.high[a] = type.velocity[a];
+      hold.any = true;
+      hold.low = hold.low.cwiseMin(x), hold.high = hold.high.cwiseMax(x);
+      piece.led.low[a] = std::min(piece.led.low[a], type.velocity[a]);
+      piece.led.high[a] = std::max(piece.led.high[a], type.velocity[a]);
+    }
   }
-  if (!all_led) piece.led = {piece.led.low.cwiseMin(0), piece.led.high.cwiseMax(0)};
-  if (free_mass > 0) piece.acceleration /= free_mass;
+  for (int a = 0; a < 3; ++a) {
+    if (!(free_mass[a] > 0)) continue;
+    piece.led.low[a] = std::min(piece.led.low[a], 0.0), piece.led.high[a] = std::max(piece.led.high[a], 0.0);
+    piece.acceleration[a] /= free_mass[a];
+  }
   read_velocities(scene, piece);
 }
 
-struct PieceKind {
-  bool driven, fixed;
+using Ids = std::vector<uint32_t>;
+
+// Of pieces that are gathered: nothing holds or leads them, all of them is held at rest, or else.
+enum class PieceKind { loose, fixed, led };
+
+PieceKind kind_of(const Scene& scene, const Ids& ids) {
+  bool loose = true, fixed = true;
+  for (const uint32_t i : ids) {
+    const ParticleType& type = scene.rule.types[scene.body.type[i]];
+    loose = loose && !driven(type), fixed = fixed && is_fixed(type);
+  }
+  return loose ? PieceKind::loose : fixed ? PieceKind::fixed : PieceKind::led;
+}
+
+struct Group {
+  Ids ids;
+  PieceKind kind;
+  size_t pieces = 1;
 };
 
-// Puts all pieces of a kind into the first of them.
-void gather(const Scene& scene, const PieceKind& kind, std::vector<Piece>& pieces) {
-  const auto is = [&](const Piece& piece) {
-    return piece.driven == kind.driven && piece.fixed == kind.fixed;
-  };
-  const auto first = std::ranges::find_if(pieces, is);
-  if (first == pieces.end()) return;
-  Piece all;
-  all.pieces = 0;
-  for (const Piece& piece : pieces)
-    if (is(piece)) all.ids.insert(all.ids.end(), piece.ids.begin(), piece.ids.end()), ++all.pieces;
-  std::ranges::sort(all.ids);
-  read_facts(scene, all);
-  *first = std::move(all);
-  pieces.erase(std::remove_if(first + 1, pieces.end(), is), pieces.end());
+// Puts all groups of a kind into the first of them.
+void gather(PieceKind kind, std::vector<Group>& groups) {
+  const auto is = [&](const Group& group) { return group.kind == kind; };
+  const auto first = std::ranges::find_if(groups, is);
+  if (first == groups.end()) return;
+  for (auto other = first + 1; other != groups.end(); ++other)
+    if (is(*other))
+      first->ids.insert(first->ids.end(), other->ids.begin(), other->ids.end()), ++first->pieces;
+  std::ranges::sort(first->ids);
+  groups.erase(std::remove_if(first + 1, groups.end(), is), groups.end());
 }
 
 }  // namespace
 
 std::vector<Piece> pieces_of(const Scene& scene, size_t most) {
   Clusters clusters = connected(scene);
-  std::vector<Piece> pieces;
+  std::vector<Group> groups;
   std::vector<uint32_t> number(scene.body.size());
   for (uint32_t i = 0; i < scene.body.size(); ++i) {
     const uint32_t root = clusters.find(i);
-    if (root == i) number[i] = static_cast<uint32_t>(pieces.size()), pieces.emplace_back();
-    pieces[number[root]].ids.push_back(i);
+    if (root == i)
+      number[i] = static_cast<uint32_t>(groups.size()), groups.push_back({.ids = {}, .kind = {}});
+    groups[number[root]].ids.push_back(i);
   }
-  for (Piece& piece : pieces) read_facts(scene, piece);
-  for (const auto& kind : {PieceKind{false, false}, PieceKind{true, true}, PieceKind{true, false}})
-    if (pieces.size() > most) gather(scene, kind, pieces);
+  for (Group& group : groups) group.kind = kind_of(scene, group.ids);
+  for (const PieceKind kind : {PieceKind::loose, PieceKind::fixed, PieceKind::led})
+    if (groups.size() > most) gather(kind, groups);
+  std::vector<Piece> pieces;
+  for (Group& group : groups) {
+    Piece& piece = pieces.emplace_back();
+    piece.ids = std::move(group.ids), piece.pieces = group.pieces;
+    read_facts(scene, piece);
+  }
   return pieces;
 }
 

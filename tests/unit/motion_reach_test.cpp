@@ -413,5 +413,93 @@ margin = "auto"
   expect_near(piece.beyond.high, Vec3(0, 0.5 * duration_of_run(scene), 0), 1e-9);
 }
 
+// A block of which some is held along axes across its way flies as the whole one: with a plane of symmetry,
+// and on rails.
+TEST(MotionReach, WhatIsHeldAlongOneAxisFliesAlongOthers) {
+  const std::string block =
+      kRubber + "[geometry]\nshape = \"box\"\nmin = \"[0, -2, -2] mm\"\nmax = \"[4, 2, 2] mm\"\n";
+  const Scene half =
+      scene_of(block + "[[symmetry]]\nnormal = \"x\"\n[[velocity]]\nuniform = \"[0, 0, -2] m/s\"\n" +
+               run_for("100 ms"));
+  const PieceReach flies = motion_reach(half).pieces.at(0);
+  EXPECT_NEAR(flies.beyond.low[2], -2 * duration_of_run(half), 1e-9);
+  expect_near(flies.beyond.high, Vec3::Zero(), 1e-9);
+  EXPECT_EQ(flies.reasons, std::vector<std::string>{"the initial velocity"});
+  const std::string rails =
+      "[[constraint]]\nname = \"rails\"\nkind = \"held\"\naxes = \"xy\"\nregion = { shape = "
+      "\"half_space\", point = \"[1, 0, 0] mm\", normal = \"x\" }\n";
+  const Scene led = scene_of("gravity = \"[0, 0, -9.81] m/s^2\"\n" + block + rails + run_for("100 ms"));
+  const PieceReach falls = motion_reach(led).pieces.at(0);
+  EXPECT_NEAR(falls.beyond.low[2], -0.5 * 9.81 * std::pow(duration_of_run(led), 2), 1e-9);
+  EXPECT_EQ(falls.beyond.high[2], 0);
+  EXPECT_EQ(falls.reasons, std::vector<std::string>{"gravity"});
+  // Along x the rails hold it, and gravity stretches it at most.
+  const Scene across = scene_of("gravity = \"[9.81, 0, 0] m/s^2\"\n" + block + rails + run_for("100 ms"));
+  EXPECT_LT(motion_reach(across).pieces.at(0).beyond.high[0], 0.1e-3);
+}
+
+// In its plane of symmetry a block turns about the normal alone.
+TEST(MotionReach, APlaneOfSymmetryLetsABlockTurnAboutItsNormal) {
+  const auto spin = [](const std::string& rates) {
+    const Scene scene = scene_of(kRubber +
+                                 "[geometry]\nshape = \"box\"\nmin = \"[0, -2, -2] mm\"\nmax = \"[4, 2, 2] "
+                                 "mm\"\n[[symmetry]]\nnormal = "
+                                 "\"x\"\n[[velocity]]\nspin = \"[" +
+                                 rates + "] rad/s\"\n" + run_for("10 ms"));
+    return motion_reach(scene).pieces.at(0).spin;
+  };
+  expect_near(spin("20, 0, 0"), Vec3(20, 0, 0), 1e-6);
+  EXPECT_EQ(spin("0, 20, 0"), Vec3(0, 0, 0));
+}
+
+// A ram that comes from beside strikes a block before it lands, or as it bounces: it flies past the floor.
+TEST(MotionReach, ABlowFromBesideOutlivesNoFloor) {
+  const auto hit_from = [](double ram) {
+    return scene_of("gravity = \"[0, 0, -9.81] m/s^2\"\n" + kRubber +
+                    fmt::format(R"([geometry]
+shape = "union"
+of = ["block", "floor", "ram"]
+[regions]
+block = {{ shape = "box", min = "[-2, -2, 20] mm", max = "[2, 2, 24] mm" }}
+floor = {{ shape = "box", min = "[-4, -4, -2] mm", max = "[4, 4, 0] mm" }}
+ram = {{ shape = "box", min = "[{}, -2, 5] mm", max = "[{}, 2, 24] mm" }}
+[[material]]
+name = "rubber"
+[[material]]
+name = "ground"
+region = "floor"
+[[material]]
+name = "steel"
+region = "ram"
+[[bond]]
+between = ["rubber", "ground"]
+contact = true
+[[bond]]
+between = ["rubber", "steel"]
+contact = true
+[[constraint]]
+name = "fixed"
+kind = "held"
+region = "floor"
+[[constraint]]
+name = "led"
+kind = "moved"
+velocity = "[0.5, 0, 0] m/s"
+region = "ram"
+)",
+                                ram - 4, ram) +
+                    run_for("100 ms"));
+  };
+  const auto missed = hit_from(-200);
+  EXPECT_EQ(of_material(missed, "rubber").stopped_by[2][0], "ground");
+  for (const double ram : {-10.0, -40.0}) {  // strikes after 12 ms or so, and after 72; it lands after 63
+    const Scene scene = hit_from(ram);
+    const PieceReach block = of_material(scene, "rubber");
+    EXPECT_EQ(block.stopped_by[2][0], "") << ram;
+    // Beside the floor it falls on.
+    EXPECT_LT(block.beyond.low[2], -29 * kLayer - 5e-3) << ram;
+  }
+}
+
 }  // namespace
 }  // namespace cuboct
