@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "hw/plan/reach.h"
@@ -22,11 +23,15 @@ namespace {
 constexpr uint64_t kLeastCells = 10000;  // a run of fewer is not slow by them
 constexpr double kMostCellsEach = 20;
 
-// With those that keep the lattice closed.
-double cells_of(const Scene& scene, const Plan& plan) {
+// With those that keep the lattice closed; none where they are more than can be built.
+std::optional<double> cells_of(const Scene& scene, const Plan& plan) {
   const Cell period = plan.lattice.period();
-  return Lattice(reachable_cells(scene, plan.rule.edges(), plan.origin, period, plan.rule.axes), period)
-      .size();
+  try {
+    return Lattice(reachable_cells(scene, plan.rule.edges(), plan.origin, period, plan.rule.axes), period)
+        .size();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 // As a scene has it: "[2, 2, 60] mm".
@@ -64,13 +69,8 @@ std::string reach_warning(const Scene& scene, const Plan& plan) {
   const double edge = plan.rule.edges().longest;
   Scene other = scene;
   other.reach_margin = Vec3::Constant(kAutoMargin), other.reach = {Vec3::Zero(), Vec3::Zero()};
-  double automatic = 0;
-  try {
-    automatic = cells_of(other, plan);
-  } catch (const InputError&) {
-    return {};  // it asks for more than can be built
-  }
-  if (automatic > 0.5 * static_cast<double>(all)) return {};
+  const std::optional<double> automatic = cells_of(other, plan);
+  if (!automatic || *automatic > 0.5 * static_cast<double>(all)) return {};
   std::string text =
       fmt::format("{} cells are built, and {} hold matter at the start", count_text(static_cast<double>(all)),
                   count_text(static_cast<double>(matter)));
@@ -81,23 +81,25 @@ std::string reach_warning(const Scene& scene, const Plan& plan) {
     if (!live[static_cast<size_t>(a)] || scene.reach_margin[a] <= edge) continue;
     other.reach_margin = scene.reach_margin, other.reach = scene.reach;
     other.reach_margin[a] = edge;
-    costs.push_back(fmt::format("{} along {}", count_text(cells_of(other, plan)), "xyz"[a]));
+    if (const auto cells = cells_of(other, plan))
+      costs.push_back(fmt::format("{} along {}", count_text(*cells), "xyz"[a]));
   }
   if (!costs.empty())
     text += fmt::format(". With one cell edge, {}, for reach.margin they are {}",
                         quantity_text(edge, reduced ? "" : "m"), fmt::join(costs, ", "));
   if (scene.reach[0] != scene.reach[1]) {
     other.reach_margin = scene.reach_margin, other.reach = {Vec3::Zero(), Vec3::Zero()};
-    text += fmt::format(". Without reach.min and reach.max they are {}", count_text(cells_of(other, plan)));
+    if (const auto cells = cells_of(other, plan))
+      text += fmt::format(". Without reach.min and reach.max they are {}", count_text(*cells));
   }
   other.reach_margin = Vec3::Constant(edge) + largest_beyond(scene, motion_reach(scene));
   for (double& margin : other.reach_margin) margin = two_digits_up(margin);
   other.reach = {Vec3::Zero(), Vec3::Zero()};
   text += fmt::format(". The motion of the scene asks for {} of them: set margin = \"auto\"",
-                      count_text(automatic));
-  if (const double lengths = cells_of(other, plan); lengths < static_cast<double>(all))
-    text +=
-        fmt::format(", or margin = {} for {}", margin_text(other.reach_margin, reduced), count_text(lengths));
+                      count_text(*automatic));
+  if (const auto lengths = cells_of(other, plan); lengths && *lengths < static_cast<double>(all))
+    text += fmt::format(", or margin = {} for {}", margin_text(other.reach_margin, reduced),
+                        count_text(*lengths));
   return text;
 }
 

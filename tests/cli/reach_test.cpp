@@ -78,6 +78,46 @@ TEST(Reach, CheckSaysWhatAWideMarginCosts) {
   EXPECT_EQ(line_of(bench.cuboct({"check", dropped(bench, "\"[4, 4, 60] mm\"")}).out, "warning"), "");
 }
 
+// A margin in lengths around every particle would ask for more cells than can be built: it is left unsaid.
+TEST(Reach, CheckLeavesOutWhatCannotBeBuilt) {
+  const Bench bench(false);
+  const std::string path = bench.path("plate.toml");
+  std::ofstream(path) << R"(title = "A block that flies past a plate"
+density = "1 g/cm^3"
+[packing]
+pitch = "1 mm"
+[geometry]
+shape = "union"
+of = ["plate", "block"]
+[regions]
+plate = { shape = "box", min = "[-2, -50, -50] mm", max = "[0, 50, 50] mm" }
+block = { shape = "box", min = "[10, -1.5, -1.5] mm", max = "[13, 1.5, 1.5] mm" }
+[law]
+kind = "brittle"
+youngs_modulus = "1 MPa"
+direction = "z"
+[[constraint]]
+name = "fixed"
+kind = "held"
+region = "plate"
+[[velocity]]
+region = "block"
+uniform = "[5, 0, 0] m/s"
+[run]
+dt = "auto"
+duration = "900 ms"
+[reach]
+min = "[-10, -51.9, -51.9] mm"
+max = "[4520, 51.9, 51.9] mm"
+)";
+  const Answer answer = bench.cuboct({"check", path});
+  ASSERT_EQ(answer.code, 0) << answer.err;
+  EXPECT_EQ(
+      line_of(answer.out, "warning"),
+      "warning: 17.5 million cells are built, and 10108 hold matter at the start. Without reach.min and "
+      "reach.max they are 21441. The motion of the scene asks for 100991 of them: set margin = \"auto\"");
+}
+
 TEST(Reach, AutomaticFollowsTheMotion) {
   const Bench bench(false);
   const std::string path = dropped(bench, "\"auto\"");
