@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -132,6 +134,44 @@ TEST_F(Log, EndsWithTheLastStep) {
   ASSERT_GE(table.rows.size(), 2u) << answer.err;
   EXPECT_NE(answer.out.find("after " + table.rows.back().at("step") + " of"), std::string::npos)
       << answer.out;
+}
+
+// On a terminal, of load steps: each is many evaluations of forces, so that a speed in steps says nothing.
+TEST(TerminalLog, ALineOnATerminalCountsLoadStepsWithoutASpeed) {
+  if (std::system("script --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no script(1) for a terminal";
+  const Bench bench(false);
+  const std::string scene = bench.path("bar.toml"), seen = bench.path("seen");
+  std::ofstream(scene) << R"(density = "1 g/cm^3"
+[packing]
+pitch = "1 mm"
+[law]
+kind = "elastic"
+youngs_modulus = "1 MPa"
+direction = "x"
+[geometry]
+shape = "box"
+min = "[-1, -2, -2] mm"
+max = "[20, 2, 2] mm"
+[[constraint]]
+name = "clamp"
+kind = "held"
+region = { shape = "half_space", normal = "x" }
+[[constraint]]
+name = "grip"
+kind = "moved"
+velocity = "[0.1, 0, 0] m/s"
+region = { shape = "half_space", point = "[19, 0, 0] mm", normal = "-x" }
+[run]
+dt = "auto"
+steps = 2000
+static = { load_steps = 1000, tolerance = 0.001, evaluations = 1000 }
+)";
+  const std::string run =
+      fmt::format("script -qec '{} run {}' /dev/null >{}", bench.path("bin/cuboct"), scene, seen);
+  ASSERT_EQ(std::system(run.c_str()), 0);
+  const std::string text = contents(seen);
+  EXPECT_NE(text.find("reference, loading: step "), std::string::npos) << text;
+  EXPECT_EQ(text.find("particle-steps"), std::string::npos) << text;
 }
 
 }  // namespace
