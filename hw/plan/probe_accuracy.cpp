@@ -89,7 +89,7 @@ void tell_reasons(const AutoWidths& before, const FixedRule& was, AutoWidths& no
 }  // namespace
 
 bool asks_accuracy(const Scene& scene) {
-  return !scene.loading &&
+  return !scene.loading && scene.steps > 0 &&
          std::ranges::any_of(scene.probes, [](const Probe& probe) { return probe.accuracy > 0; });
 }
 

@@ -100,6 +100,7 @@ class Estimate {
 
   ProbeError of(const Probe& probe) const {
     ProbeError error{probe.name, {}, {}, breaks_};
+    if (scene_.steps == 0) return refused(std::move(error), "the run has no steps");
     if (probe.kind == Probe::Kind::crack) return crack(std::move(error));
     if (scene_.thermal) return thermal(probe, std::move(error));
     const ParticleSet& set = probe.kind == Probe::Kind::stress_strain ? probe.grip : probe.set;
@@ -180,7 +181,7 @@ class Estimate {
     double share = 1;
     if (all(probe.grip, imposed_alone) && !probe.lower.ids.empty() && !probe.upper.ids.empty()) {
       const double gauge = mean(probe.upper) - mean(probe.lower), between = pulled_length(scene_, probe);
-      share = std::clamp(1 - gauge / between, motion_.rest_distance / between, 1.0) / 2;
+      share = std::clamp(1 - gauge / between, std::min(1.0, motion_.rest_distance / between), 1.0) / 2;
     }
     error.curves = {{"stress", force_ + loaded()}, {"strain", share * force_ + loaded()}};
     error.why = part();

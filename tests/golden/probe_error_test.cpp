@@ -194,6 +194,15 @@ TEST(ProbeError, RefusesWhatNoFormatsKeep) {
             0U);
 }
 
+// Nothing is read of a run without steps; a grip between the marks leaves no share of a length.
+TEST(ProbeError, OfNoStepsIsNotEstimated) {
+  Scene scene = parse_scene(bar(), "bar.toml");
+  scene.steps = 0;
+  const ProbeError error = probe_errors(scene, plan_of(scene, {})).front();
+  EXPECT_TRUE(error.curves.empty());
+  EXPECT_EQ(error.why, "the run has no steps");
+}
+
 TEST(ProbeError, RefusesWhatItDoesNotEstimate) {
   const std::string held = R"(
 [[probe]]
