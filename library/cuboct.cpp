@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "cli/run/engine_options.h"
 #include "hw/program/command_line.h"
@@ -26,11 +27,14 @@ namespace {
 void find_parts() {
   Dl_info info;
   if (dladdr(reinterpret_cast<const void*>(&version), &info) == 0) return;
-  const std::filesystem::path here = std::filesystem::canonical(info.dli_fname).parent_path();
+  std::error_code failed;
+  const std::filesystem::path file = std::filesystem::canonical(info.dli_fname, failed);
+  if (failed) return;  // parts are then looked for beside the program
+  const std::filesystem::path here = file.parent_path();
   const std::filesystem::path above = here.parent_path();
   look_for_parts_in({here.string()});
   for (const auto& directory : {above / "bin", above / "cuboct/bin", above, here})
-    if (std::filesystem::is_regular_file(directory / "cuboct"))
+    if (std::filesystem::is_regular_file(directory / "cuboct", failed))
       return set_program_directory(directory.string());
 }
 
