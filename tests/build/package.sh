@@ -16,8 +16,9 @@ trap tidy EXIT
 (cd "$build" && cpack -G DEB -B "$work" >"$work/log" 2>&1) || { cat "$work/log"; exit 1; }
 package=$(echo "$work"/cuboct_*.deb)
 if command -v lintian >/dev/null; then
-  lintian --tag-display-limit 0 "$package" >"$work/lintian" 2>/dev/null || true
-  if grep '^E:' "$work/lintian"; then exit 1; fi
+  # 0: no tag of an error. 2: some. Another code: lintian itself failed.
+  lintian --tag-display-limit 0 --fail-on error "$package" >"$work/lintian" 2>"$work/lintian.err" ||
+    { echo "lintian: exit code $?"; grep '^E:' "$work/lintian" || cat "$work/lintian.err"; exit 1; }
 fi
 
 debootstrap --variant=minbase bookworm "$clean" "${MIRROR:-http://deb.debian.org/debian}" >"$work/log" 2>&1 || { tail -n 20 "$work/log"; exit 1; }
