@@ -46,9 +46,8 @@ struct Lack {
 };
 
 // Of all probes the one that lacks most; none: all keep what they ask for.
-Lack lack_of(const Scene& scene, const FixedRule& rule) {
+Lack lack_of(const Scene& scene, const std::vector<ProbeError>& errors) {
   Lack lack;
-  const std::vector<ProbeError> errors = probe_errors(scene, rule);
   for (size_t k = 0; k < errors.size(); ++k) {
     const Probe& probe = scene.probes[k];
     if (!(probe.accuracy > 0)) continue;
@@ -98,7 +97,8 @@ void refine_for_probes(const Scene& scene, const Arch& arch, const CellEdges& ed
   // The least that any format asks for: a scene's least accuracy and what an estimate is above a part.
   constexpr double kLeast = 1e-9;
   constexpr int kIdle = 8;  // halvings below which the least formats that are taken may all be enough
-  const Lack first = lack_of(scene, rule);
+  const ProbeErrors errors(scene);
+  const Lack first = lack_of(scene, errors.of(rule));
   if (first.probe == nullptr) return;
   Lack best = first;
   FixedRule last = rule;
@@ -111,7 +111,7 @@ void refine_for_probes(const Scene& scene, const Arch& arch, const CellEdges& ed
     } catch (const InputError&) {
       break;  // formats that fit one another end here
     }
-    const Lack lack = lack_of(scene, tried);
+    const Lack lack = lack_of(scene, errors.of(tried));
     if (lack.probe == nullptr) {
       tell_reasons(chosen, rule, finer, tried,
                    fmt::format("by the accuracy of probe '{}'", best.probe->name));

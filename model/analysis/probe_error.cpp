@@ -75,25 +75,43 @@ bool swings(const Scene& scene, const Parts& parts, const Vec3& size) {
   return across != along && longest > kSlender * size[across] && square[along] < 0.1 * square[across];
 }
 
-class Estimate {
- public:
-  Estimate(const Scene& scene, const FixedRule& fixed)
-      : scene_(scene), fixed_(fixed), motion_(motion_of(scene)), bond_(bond_error(scene, fixed, motion_)) {
+}  // namespace
+
+// What no format changes.
+struct ProbeErrors::Facts {
+  explicit Facts(const Scene& scene) : motion(motion_of(scene)), parts(parts_of(scene)) {
     const Vec3 size = body_size(scene);
-    parts_ = parts_of(scene);
-    length_ = std::max(size.maxCoeff(), motion_.rest_distance);
+    length = std::max(size.maxCoeff(), motion.rest_distance);
+    sections = std::max(1.0, static_cast<double>(scene.body.size()) * motion.rest_distance / length);
+    initial = motion.cause == StrainCause::initial || motion.cause == StrainCause::rotation;
+    bends = motion.cause == StrainCause::bending ||
+            (motion.cause == StrainCause::initial && swings(scene, parts, size));
+  }
+
+  Motion motion;
+  Parts parts;
+  double length = 0, sections = 1;
+  bool initial = false, bends = false;
+};
+
+class ProbeErrors::Estimate {
+ public:
+  Estimate(const Scene& scene, const Facts& facts, const FixedRule& fixed)
+      : scene_(scene),
+        fixed_(fixed),
+        motion_(facts.motion),
+        bond_(bond_error(scene, fixed, motion_)),
+        length_(facts.length),
+        sections_(facts.sections),
+        parts_(facts.parts) {
     const auto count = static_cast<double>(scene.body.size());
-    sections_ = std::max(1.0, count * motion_.rest_distance / length_);
     time_ = static_cast<double>(scene.steps) * scene.rule.dt;
-    const bool initial = motion_.cause == StrainCause::initial || motion_.cause == StrainCause::rotation;
-    const bool bends = motion_.cause == StrainCause::bending ||
-                       (motion_.cause == StrainCause::initial && swings(scene, parts_, size));
     // Of a ramp the root mean square is 1/sqrt(3) of its end, of a vibration 1/sqrt(2) of its largest.
-    const double of_curve = std::sqrt(initial ? 2 : 3);
+    const double of_curve = std::sqrt(facts.initial ? 2 : 3);
     // A part steps between its two signs as the strain passes units: twice its size. A wave of that stress is
     // doubled where the body is held. Across a body that bends, strains differ, and units are passed at
     // different times.
-    force_ = bends ? 2 * of_curve * bond_.together(sections_, count) : 4 * of_curve * bond_.together();
+    force_ = facts.bends ? 2 * of_curve * bond_.together(sections_, count) : 4 * of_curve * bond_.together();
     breaks_ = bond_.peak_strain > 0 && kConcentration * bond_.strain >= bond_.peak_strain;
     for (size_t t = 0; t < fixed.types.size(); ++t) add_type(t);
   }
@@ -298,24 +316,30 @@ class Estimate {
 
   const Scene& scene_;
   const FixedRule& fixed_;
-  Motion motion_;
+  const Motion& motion_;
   BondError bond_;
-  double length_ = 0, sections_ = 1, time_ = 0;
+  double length_, sections_, time_ = 0;
   double force_ = 0;                // of forces and what they make, over the size at the expected strain
   double leading_ = 0, loads_ = 0;  // worst of velocities that are imposed, of gravity and forces
   std::vector<double> led_;         // by type
   bool breaks_ = false;
-  Parts parts_;
+  const Parts& parts_;
 };
 
-}  // namespace
+ProbeErrors::ProbeErrors(const Scene& scene)
+    : scene_(scene), facts_(scene.probes.empty() ? nullptr : std::make_unique<Facts>(scene)) {}
+ProbeErrors::~ProbeErrors() = default;
+
+std::vector<ProbeError> ProbeErrors::of(const FixedRule& rule) const {
+  std::vector<ProbeError> errors;
+  if (facts_ == nullptr) return errors;
+  const Estimate estimate(scene_, *facts_, rule);
+  for (const Probe& probe : scene_.probes) errors.push_back(estimate.of(probe));
+  return errors;
+}
 
 std::vector<ProbeError> probe_errors(const Scene& scene, const FixedRule& rule) {
-  std::vector<ProbeError> errors;
-  if (scene.probes.empty()) return errors;
-  const Estimate estimate(scene, rule);
-  for (const Probe& probe : scene.probes) errors.push_back(estimate.of(probe));
-  return errors;
+  return ProbeErrors(scene).of(rule);
 }
 
 }  // namespace cuboct

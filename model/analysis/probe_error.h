@@ -3,6 +3,7 @@
 // docs/reference/numeric.md, "What a probe is off by", derives it.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,25 @@ struct ProbeError {
   bool until_breaks = false;
 };
 
-// One for each probe of the scene, in their order. Of a rule of pairs, in the formats of `rule`.
+// Of one scene, which must outlive it, in several formats: what formats do not change is computed once.
+class ProbeErrors {
+ public:
+  explicit ProbeErrors(const Scene& scene);
+  ~ProbeErrors();
+  ProbeErrors(const ProbeErrors&) = delete;
+  ProbeErrors& operator=(const ProbeErrors&) = delete;
+
+  // One for each probe of the scene, in their order. Of a rule of pairs, in the formats of `rule`.
+  std::vector<ProbeError> of(const FixedRule& rule) const;
+
+ private:
+  struct Facts;
+  class Estimate;
+  const Scene& scene_;
+  std::unique_ptr<const Facts> facts_;
+};
+
+// Of one rule alone.
 std::vector<ProbeError> probe_errors(const Scene& scene, const FixedRule& rule);
 
 }  // namespace cuboct
