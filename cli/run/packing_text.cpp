@@ -44,23 +44,24 @@ struct Layers {
   int64_t count;
 };
 
-// Those that hold particles: between two bodies there may be some without.
-int64_t layers_in(const std::vector<Vec3>& x, int axis, double spacing) {
+// Those that hold particles: between two bodies there may be some without, and one layer of the packing
+// across another axis has not all of them.
+Layers layers_in(const std::vector<Vec3>& x, int axis, double spacing) {
   std::vector<int64_t> places;
   places.reserve(x.size());
   for (const Vec3& at : x) places.push_back(std::llround((at[axis] - x.front()[axis]) / spacing));
   std::ranges::sort(places);
-  return static_cast<int64_t>(std::ranges::unique(places).begin() - places.begin());
+  places.erase(std::ranges::unique(places).begin(), places.end());
+  int64_t apart = places.size() < 2 ? 1 : places.back() - places.front();
+  for (size_t k = 1; k < places.size(); ++k) apart = std::min(apart, places[k] - places[k - 1]);
+  return {axis, static_cast<double>(apart) * spacing, static_cast<int64_t>(places.size())};
 }
 
 std::vector<Layers> layers_of(const Scene& scene, const PackedShape& packed) {
   std::vector<Layers> layers;
-  for (int a = 0; a < 3; ++a) {
-    const auto& along = packed.along[static_cast<size_t>(a)];
-    if (!along) continue;
-    const double spacing = layer_spacing(packed.fcc, *along);
-    layers.push_back({a, spacing, layers_in(scene.packing().x, a, spacing)});
-  }
+  for (int a = 0; a < 3; ++a)
+    if (const auto& along = packed.along[static_cast<size_t>(a)])
+      layers.push_back(layers_in(scene.packing().x, a, layer_spacing(packed.fcc, *along)));
   return layers;
 }
 

@@ -89,7 +89,7 @@ TEST(Check, TellsPhysics) {
                  "run         6226 steps of 48.2 ns = 300 us, 14.2 crossings\n"
                  "step        0.2 of 241 ns, the largest stable one of the perfect packing\n"
                  "strain      about 10 %, by the velocity imposed on 'matter/pulled'\n"
-                 "layers      121 x 139 x 1 along x, y and z, 250 um, 144 um and 408 um apart\n"
+                 "layers      121 x 47 x 1 along x, y and z, 250 um, 433 um and 408 um apart\n"
                  "section     11.8 mm\\^2 across y at 7.14 mm, 101 % of the shape's; another place of the "
                  "packing makes 100 to 101 %, and 100 to 103 % of its bending stiffness\n"
                  "work        17.5 million particle-steps, about [0-9.]+ s on [0-9]+ threads?, [0-9.]+ MB of "
