@@ -3,9 +3,12 @@
 // native nodes' cycles.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "emu/board/session.h"
 #include "emu/machine/collector.h"
 #include "hw/rtl/rtl_emit.h"
+#include "tests/backend/bond_cases.h"
 #include "tests/backend/rule_cases.h"
 #include "tests/board/simulated_board.h"
 #include "tests/support/refused_with.h"
@@ -32,7 +35,8 @@ Trace run(emu::Host& host, const Case& c, const BoardRun& run) {
 }
 
 // A run that is looked at after each step, and one that is read at its end alone.
-void expect_golden(const Case& c, const BoardChoice& choice, uint64_t steps) {
+void expect_golden(const Case& c, const BoardChoice& choice, uint64_t steps,
+                   const std::function<void(emu::Host&)>& after = {}) {
   SimulatedBoard machine(c.setup, choice);
   emu::Host host(machine.port(), SimulatedBoard::kBaud, kRuleTimeout);
   const Trace golden = golden_trace(c.setup, steps);
@@ -47,15 +51,28 @@ void expect_golden(const Case& c, const BoardChoice& choice, uint64_t steps) {
     EXPECT_EQ(whole.state_hash.back(), golden.state_hash.back());
   }
   EXPECT_EQ(host.count().retries, 0u);
+  if (after) after(host);
 }
 
-// Three rounds with fields. In the sixth step the first round's finish and the last round's pairs fail, and
-// what is found in the earlier round counts.
+// Three rounds with fields. In the sixth step the last round's pairs fail in both nodes, and the first
+// round's finish on the right of the second one: what is found in the earlier round counts, though another
+// node finds a lesser id later.
 TEST(RuleBoard, FindsTheFaultOfTheEarlierRound) {
-  const Case c = case_of("small", small(failing(true, true)), {}, 9);
-  ASSERT_LE(c.setup.plan.nodes(), 4u);
-  ASSERT_TRUE(golden_trace(c.setup, 9).stop);
-  expect_golden(c, behind("axi4lite"), 9);
+  const auto strong = [](const std::string& rule) { return replaced(rule, "1e7 N", "1e8 N"); };
+  const std::string right = replaced(strong(failing(true, true)), "a + 1.9", "a + 2.3");
+  const Case c = case_of("small", small(right), {}, 9);
+  ASSERT_EQ(c.setup.plan.nodes(), 2u);
+  const auto found = golden_trace(c.setup, 9).stop;
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->cell, 1u);
+  expect_golden(c, behind("axi4lite"), 9, [&](emu::Host& host) {
+    // The first node's own fault: of the last round, and of a lesser id.
+    const emu::BoardFault other = host.fault(0);
+    const int id_bits = c.setup.plan.words.id_bits;
+    EXPECT_EQ(other.fault, found->fault);
+    EXPECT_LT(other.particle & ((1U << id_bits) - 1), found->particle);
+    EXPECT_GT(other.particle >> id_bits, host.fault(1).particle >> id_bits);
+  });
 }
 
 TEST(RuleBoard, HoldsGoldensBitsFieldsAndCycles) {
