@@ -78,19 +78,28 @@ void FrameMaker::measure(Frame& frame, bool fixed) const {
   }
 }
 
-Frame FrameMaker::make(const State& state) const {
-  const Plan& plan = loaded_.setup.plan;
+Frame frame_of(const Loaded& loaded, const State& state) {
+  const Plan& plan = loaded.setup.plan;
   Body body = to_real(state, plan.rule, plan.lattice, plan.origin);
-  Frame frame{state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x),
-              std::move(body.v), std::move(body.type)};
+  return {state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x), std::move(body.v),
+          std::move(body.type)};
+}
+
+Frame frame_of(const Loaded& loaded, const RealFrame& real) {
+  const Scene& scene = loaded.scene;
+  Frame frame{real.step, static_cast<double>(real.step) * scene.rule.dt, real.x, real.v, scene.body.type};
+  frame.own = real.shown;
+  return frame;
+}
+
+Frame FrameMaker::make(const State& state) const {
+  Frame frame = frame_of(loaded_, state);
   measure(frame, true);
   return frame;
 }
 
 Frame FrameMaker::make(const RealFrame& real) const {
-  const Scene& scene = loaded_.scene;
-  Frame frame{real.step, static_cast<double>(real.step) * scene.rule.dt, real.x, real.v, scene.body.type};
-  frame.own = real.shown;
+  Frame frame = frame_of(loaded_, real);
   measure(frame, false);
   return frame;
 }

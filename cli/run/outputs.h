@@ -32,13 +32,17 @@ TraceHead head_of(const Loaded& loaded, bool real, bool si);
 void leave_state(const std::string& directory, const TraceHead& head, const RunState& last,
                  const Trace& rest);
 
+// A state in real units, without strains.
+Frame frame_of(const Loaded& loaded, const State& state);
+Frame frame_of(const Loaded& loaded, const RealFrame& real);  // types the scene's
+
 // Frames in real units, with each particle's axial strain against the initial state.
 class FrameMaker {
  public:
   // `whole`: with strain tensors and broken bonds, which pictures do without.
   FrameMaker(const Loaded& loaded, bool whole);
   Frame make(const State& state) const;
-  Frame make(const RealFrame& frame) const;  // types the scene's
+  Frame make(const RealFrame& frame) const;
 
  private:
   void measure(Frame& frame, bool fixed) const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/base/quantity_text.h"
+#include "model/contract/material_name.h"
 #include "model/scene/packed_shape.h"
 
 namespace cuboct {
@@ -102,7 +103,7 @@ void add_materials(Items& items, const Scene& scene) {
   std::vector<Part> parts;
   std::vector<size_t> part_of;
   for (const ParticleType& type : scene.rule.types) {
-    const std::string name = type.name.substr(0, type.name.find('/'));
+    const std::string name = material_of(type.name);
     const auto known = std::ranges::find(parts, name, &Part::name);
     part_of.push_back(static_cast<size_t>(known - parts.begin()));
     if (known == parts.end()) parts.push_back({name, {}, {}});

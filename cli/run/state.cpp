@@ -40,27 +40,19 @@ size_t frame_at(const Frames& frames, const StateOptions& options) {
   return static_cast<size_t>(found - kept.begin());
 }
 
-Frame frame_of(const Trace& trace, const Loaded& loaded, const StateOptions& options) {
-  if (!trace.bodies.empty()) {
-    const RealFrame& real = trace.bodies[frame_at(trace.bodies, options)];
-    return {real.step, static_cast<double>(real.step) * loaded.scene.rule.dt, real.x, real.v,
-            loaded.scene.body.type};
-  }
+Frame chosen_frame(const Trace& trace, const Loaded& loaded, const StateOptions& options) {
+  if (!trace.bodies.empty()) return frame_of(loaded, trace.bodies[frame_at(trace.bodies, options)]);
   if (trace.frames.empty())
     throw InputError(fmt::format("{} holds no state of particles", options.directory),
                      "a run without --no-states leaves them");
-  const State& state = trace.frames[frame_at(trace.frames, options)];
-  const Plan& plan = loaded.setup.plan;
-  Body body = to_real(state, plan.rule, plan.lattice, plan.origin);
-  return {state.step, static_cast<double>(state.step) * plan.rule.dt, std::move(body.x), std::move(body.v),
-          std::move(body.type)};
+  return frame_of(loaded, trace.frames[frame_at(trace.frames, options)]);
 }
 
 void save(const StateOptions& options) {
   const RunRecord record = read_record(options.directory);
   const Trace trace = read_run(options.directory, record);
   const Loaded loaded = scene_of_run(options.directory, record, trace);
-  const Frame frame = frame_of(trace, loaded, options);
+  const Frame frame = chosen_frame(trace, loaded, options);
   check_writable(options.out);
   write_whole(options.out, [&](const std::string& temporary) {
     XyzWriter(temporary, frame_style(loaded.scene), {.exact = true}).add(frame);

@@ -65,12 +65,13 @@ struct Nearest {
   size_t find(const std::vector<Vec3>& x, const Periodic& periodic, uint32_t i,
               std::span<const uint32_t> near) {
     by_distance.clear();
-    for (const uint32_t j : near) by_distance.emplace_back(shortest(x[j] - x[i], periodic).squaredNorm(), j);
+    for (const uint32_t j : near)
+      by_distance.emplace_back(nearest_image(x[j] - x[i], periodic).squaredNorm(), j);
     const size_t count = std::min(kBcc, by_distance.size());
     std::partial_sort(by_distance.begin(), by_distance.begin() + static_cast<ptrdiff_t>(count),
                       by_distance.end());
     for (size_t k = 0; k < count; ++k) {
-      d[k] = shortest(x[by_distance[k].second] - x[i], periodic);
+      d[k] = nearest_image(x[by_distance[k].second] - x[i], periodic);
       r[k] = std::sqrt(by_distance[k].first);
     }
     return count;
@@ -102,7 +103,7 @@ std::vector<Structure> structures_within(const std::vector<Vec3>& x, const Perio
   for_each_near(x, periodic, cutoff, threads, [&](size_t, uint32_t i, std::span<const uint32_t> near) {
     if (near.size() != kClose && near.size() != kBcc) return;
     std::array<Vec3, kBcc> d;
-    for (size_t k = 0; k < near.size(); ++k) d[k] = shortest(x[near[k]] - x[i], periodic);
+    for (size_t k = 0; k < near.size(); ++k) d[k] = nearest_image(x[near[k]] - x[i], periodic);
     found[i] = structure_of(d.data(), near.size(), cutoff);
   });
   return found;

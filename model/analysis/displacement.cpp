@@ -44,7 +44,7 @@ void DisplacementMeter::add(uint64_t step, const std::vector<Vec3>& x, const std
     latest_ = x;
   } else if (wrapped_) {
     std::vector<Vec3> ways(x.size());
-    for (size_t i = 0; i < x.size(); ++i) ways[i] = shortest(x[i] - latest_[i], periodic_);
+    for (size_t i = 0; i < x.size(); ++i) ways[i] = nearest_image(x[i] - latest_[i], periodic_);
     check(step, ways, drift, dt);
     for (size_t i = 0; i < x.size(); ++i) moved_[i] += ways[i];
     latest_ = x;

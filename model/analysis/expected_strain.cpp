@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "model/analysis/clusters.h"
+#include "model/analysis/motion.h"
 #include "model/contract/law.h"
 #include "model/contract/neighbours.h"
 
@@ -27,19 +28,12 @@ double dot(const Field& a, const Field& b) {
 
 // Which particles hang, by bonds, on one that is held or led.
 std::vector<char> supported(const Rule& rule, std::span<const uint8_t> type, const std::vector<Bond>& bonds) {
-  std::vector<uint32_t> root(type.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](uint32_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
-  for (const Bond& b : bonds) root[find(b.i)] = find(b.j);
+  Clusters parts(type.size());
+  for (const Bond& b : bonds) parts.join(b.i, b.j);
   std::vector<char> held(type.size(), 0);
-  for (uint32_t i = 0; i < type.size(); ++i) {
-    const ParticleType& t = rule.types[type[i]];
-    if (t.pd || t.imposed != std::array<bool, 3>{}) held[find(i)] = 1;
-  }
-  for (uint32_t i = 0; i < type.size(); ++i) held[i] = held[find(i)];
+  for (uint32_t i = 0; i < type.size(); ++i)
+    if (driven(rule.types[type[i]])) held[parts.find(i)] = 1;
+  for (uint32_t i = 0; i < type.size(); ++i) held[i] = held[parts.find(i)];
   return held;
 }
 

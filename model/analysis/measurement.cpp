@@ -15,7 +15,9 @@
 #include "model/analysis/radial_distribution.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
+#include "model/contract/material_name.h"
 #include "model/rules/rounds_rule.h"
+#include "model/solid/dynamical_matrix.h"
 #include "model/trace/frame.h"
 
 namespace cuboct {
@@ -26,12 +28,7 @@ constexpr uint64_t kBins = 200;
 // twelve nearest are found.
 constexpr double kRdfReach = 4.1, kCnaReach = 2;
 
-std::string material_of(const ParticleType& type) { return type.name.substr(0, type.name.find('/')); }
-
 bool all_periodic(const Scene& scene) { return scene.periodic.extent.minCoeff() > 0; }
-
-// m^3 of a close packing of the pitch, each particle.
-double packed_volume(double pitch) { return pitch * pitch * pitch / std::sqrt(2.0); }
 
 // m, about the distance of nearest neighbours: the pitch; else that of a close packing of the box's density;
 // else half the cutoff.
@@ -52,7 +49,7 @@ double within_box(double range, const Periodic& periodic) {
 std::vector<std::string> material_names(const Scene& scene) {
   std::vector<std::string> names;
   for (const ParticleType& type : scene.rule.types)
-    if (const std::string name = material_of(type); std::ranges::find(names, name) == names.end())
+    if (const std::string name = material_of(type.name); std::ranges::find(names, name) == names.end())
       names.push_back(name);
   return names;
 }
@@ -66,7 +63,7 @@ std::vector<char> particles_of(const Scene& scene, const std::string& material) 
   }
   std::vector<char> belongs;
   for (const uint8_t type : scene.body.type)
-    belongs.push_back(material_of(scene.rule.types[type]) == material);
+    belongs.push_back(material_of(scene.rule.types[type].name) == material);
   return belongs;
 }
 
@@ -99,8 +96,7 @@ Volume volume_of(const Scene& scene, const MeasureChoice& choice) {
   if (scene.pitch == 0 || atoms)
     throw InputError("the body's volume is not known: its box does not repeat along x, y and z",
                      choice.option + "volume says it: '1 mm^3'");
-  return {static_cast<double>(scene.body.size()) * packed_volume(scene.pitch), "the particles as packed",
-          false};
+  return {static_cast<double>(scene.body.size()) * fcc_volume(scene.pitch), "the particles as packed", false};
 }
 
 // Columns "step" and, but of static loading, "time", then others, a row for each frame.

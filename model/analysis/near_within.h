@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/base/parallel.h"
+#include "model/contract/nearest_image.h"
 #include "model/real/near_walk.h"
 
 namespace cuboct {
@@ -17,15 +18,6 @@ namespace cuboct {
 // InputError where a period is below two of `range` (m): a particle would meet two images of another. `what`:
 // "cutoff".
 void check_range(double range, const Periodic& periodic, const char* what);
-
-// The shortest vector between two images of points, m.
-inline Vec3 shortest(Vec3 d, const Periodic& periodic) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double extent = periodic.extent[axis];
-    if (extent > 0 && std::abs(d[axis]) > extent / 2) d[axis] -= extent * std::round(d[axis] / extent);
-  }
-  return d;
-}
 
 // Calls see(member, i, near) once for each particle i: `near` are the ids of all others nearer than `range`
 // (m), ascending. Calls run in up to `threads` threads (0: one per core), of which `member` tells this one.

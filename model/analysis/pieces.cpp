@@ -11,6 +11,7 @@
 #include "model/analysis/clusters.h"
 #include "model/analysis/crack.h"
 #include "model/analysis/motion.h"
+#include "model/contract/material_name.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
@@ -118,8 +119,7 @@ void read_velocities(const Scene& scene, Piece& piece) {
 
 void read_facts(const Scene& scene, Piece& piece) {
   const std::vector<ParticleType>& types = scene.rule.types;
-  const std::string& name = types[scene.body.type[piece.ids.front()]].name;
-  piece.name = name.substr(0, name.find('/'));
+  piece.name = material_of(types[scene.body.type[piece.ids.front()]].name);
   piece.fixed = true;
   Vec3 free_mass = Vec3::Zero();
   for (const uint32_t i : piece.ids) {

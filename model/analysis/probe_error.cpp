@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 
 #include "model/analysis/bond_error.h"
+#include "model/analysis/clusters.h"
 #include "model/analysis/expected_strain.h"
 #include "model/analysis/motion.h"
 #include "model/analysis/synopsis.h"
@@ -39,25 +39,19 @@ struct Parts {
 Parts parts_of(const Scene& scene) {
   const Body& body = scene.body;
   Parts parts{std::vector<uint32_t>(body.size()), std::vector<char>(body.size(), 0)};
-  std::vector<uint32_t>& root = parts.root;
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](uint32_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
+  Clusters joined(body.size());
   const double range = bond_range(scene);
-  if (body.size() > kMostFollowed || !(range > 0)) {
-    std::ranges::fill(root, 0);
-  } else {
+  const bool followed = body.size() <= kMostFollowed && range > 0;
+  if (followed) {
     CellList cells(range, scene.periodic);
     cells.build(body.x);
     cells.for_each_pair(body.x, [&](uint32_t i, uint32_t j, const Vec3&, double) {
-      if (!scene.rule.only_touch(body.type[i], body.type[j])) root[find(i)] = find(j);
+      if (!scene.rule.only_touch(body.type[i], body.type[j])) joined.join(i, j);
     });
   }
   for (uint32_t i = 0; i < body.size(); ++i) {
-    root[i] = find(i);
-    if (driven(scene.rule.types[body.type[i]])) parts.hangs[root[i]] = 1;
+    if (followed) parts.root[i] = joined.find(i);
+    if (driven(scene.rule.types[body.type[i]])) parts.hangs[parts.root[i]] = 1;
   }
   return parts;
 }

@@ -22,18 +22,18 @@ void RdfMeter::add(const std::vector<Vec3>& x) {
   const double per_width = 1 / (cutoff_ / static_cast<double>(bins));
   const bool all = sets_.a.empty();
   std::vector<std::vector<uint64_t>> counts(static_cast<size_t>(threads_));
-  for_each_near(x, periodic_, cutoff_, threads_,
-                [&](size_t member, uint32_t i, std::span<const uint32_t> near) {
-                  std::vector<uint64_t>& of = counts[member];
-                  if (of.empty()) of.resize(bins);
-                  for (auto at = std::upper_bound(near.begin(), near.end(), i); at != near.end(); ++at) {
-                    const uint32_t j = *at;
-                    const int ways = all ? 2 : (sets_.a[i] && sets_.b[j]) + (sets_.a[j] && sets_.b[i]);
-                    if (ways == 0) continue;
-                    const auto bin = static_cast<size_t>(shortest(x[j] - x[i], periodic_).norm() * per_width);
-                    if (bin < bins) of[bin] += static_cast<uint64_t>(ways);
-                  }
-                });
+  for_each_near(
+      x, periodic_, cutoff_, threads_, [&](size_t member, uint32_t i, std::span<const uint32_t> near) {
+        std::vector<uint64_t>& of = counts[member];
+        if (of.empty()) of.resize(bins);
+        for (auto at = std::upper_bound(near.begin(), near.end(), i); at != near.end(); ++at) {
+          const uint32_t j = *at;
+          const int ways = all ? 2 : (sets_.a[i] && sets_.b[j]) + (sets_.a[j] && sets_.b[i]);
+          if (ways == 0) continue;
+          const auto bin = static_cast<size_t>(nearest_image(x[j] - x[i], periodic_).norm() * per_width);
+          if (bin < bins) of[bin] += static_cast<uint64_t>(ways);
+        }
+      });
   for (const std::vector<uint64_t>& of : counts)
     for (size_t bin = 0; bin < of.size(); ++bin) pairs_[bin] += of[bin];
   ++frames_;

@@ -11,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/base/spelling.h"
 #include "model/body/packing.h"
+#include "model/contract/material_name.h"
 
 namespace cuboct {
 namespace {
@@ -19,8 +20,7 @@ namespace {
 uint8_t type_of(const Scene& scene, const std::string& material) {
   std::vector<std::string> names;
   for (size_t k = 0; k < scene.rule.types.size(); ++k) {
-    const std::string& type = scene.rule.types[k].name;
-    names.push_back(type.substr(0, type.find('/')));
+    names.push_back(material_of(scene.rule.types[k].name));
     if (material.empty() ? scene.rule.types[k].material == 0 : names.back() == material)
       return static_cast<uint8_t>(k);
   }
@@ -67,9 +67,8 @@ SceneCell cell_of(const Scene& scene, const std::string& material) {
   out.cell.vectors = scene.pitch / std::numbers::sqrt2 * scene.orientation * primitive;
   out.cell.x = {Vec3::Zero()};
   out.cell.type = {type};
-  const std::string& name = scene.rule.types[type].name;
   out.of = fmt::format("{}, of {}", scene.grains > 0 ? "one grain's that is not turned" : "the packing's",
-                       name.substr(0, name.find('/')));
+                       material_of(scene.rule.types[type].name));
   return out;
 }
 

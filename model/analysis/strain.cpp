@@ -10,12 +10,6 @@
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
-Vec3 nearest_image(Vec3 d, const Periodic& periodic) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (periodic.extent[axis] > 0)
-      d[axis] -= periodic.extent[axis] * std::round(d[axis] / periodic.extent[axis]);
-  return d;
-}
 
 StrainMeter::StrainMeter(const std::vector<Vec3>& initial, const Periodic& periodic, double radius)
     : initial_(initial), periodic_(periodic), first_(initial.size() + 1, 0) {

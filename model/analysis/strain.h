@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "model/base/vec.h"
+#include "model/contract/nearest_image.h"
 #include "model/contract/rule.h"
 
 namespace cuboct {
@@ -63,8 +64,5 @@ class StrainMeter {
   std::vector<size_t> first_;         // [particle]: begin of its neighbours; one more at the end
   std::vector<uint32_t> neighbours_;  // by particle
 };
-
-// `d` in the nearest image: each periodic axis in [-extent/2, extent/2].
-Vec3 nearest_image(Vec3 d, const Periodic& periodic);
 
 }  // namespace cuboct

@@ -217,8 +217,7 @@ double pulled_length(const Scene& scene, const Probe& probe) {
   for (uint32_t id = 0; id < scene.body.size(); ++id) {
     const double x = along(id);
     low = std::min(low, x), high = std::max(high, x);
-    const ParticleType& type = scene.rule.types[scene.body.type[id]];
-    if (!type.pd && type.imposed == std::array<bool, 3>{}) continue;
+    if (!driven(scene.rule.types[scene.body.type[id]])) continue;
     if (x <= gauge) low_grip = std::max(low_grip, x);
     if (x >= gauge) high_grip = std::min(high_grip, x);
   }

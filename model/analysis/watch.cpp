@@ -8,6 +8,7 @@
 #include <limits>
 #include <tuple>
 
+#include "model/analysis/motion.h"
 #include "model/analysis/strain.h"
 #include "model/analysis/unstable.h"
 #include "model/base/parallel.h"
@@ -143,7 +144,7 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
   if (drives_)
     for (uint32_t id = 0; id < type_.size(); ++id) {
       const ParticleType& type = rule.types[type_[id]];
-      if (type.pd || type.imposed != std::array<bool, 3>{}) driven_.push_back(id);
+      if (driven(type)) driven_.push_back(id);
     }
   const bool still =
       !drives_ && !weighs && !led &&

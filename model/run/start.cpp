@@ -8,6 +8,7 @@
 #include "model/base/error.h"
 #include "model/base/input_file.h"
 #include "model/config/config.h"
+#include "model/contract/material_name.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/first_step.h"
 #include "model/scene/scene_parts.h"
@@ -18,8 +19,6 @@ namespace cuboct {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string material_of(const std::string& type) { return type.substr(0, type.find('/')); }
 
 [[noreturn]] void differ(const Scene& scene, const std::vector<std::string>& keys, const std::string& from,
                          const std::string& what) {

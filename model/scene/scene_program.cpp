@@ -10,6 +10,7 @@
 #include "model/base/error_parts.h"
 #include "model/base/hash.h"
 #include "model/config/file_kind.h"
+#include "model/contract/material_name.h"
 #include "model/program/formula_law.h"
 #include "model/program/program_rule.h"
 #include "model/scene/scene_parts.h"
@@ -297,7 +298,7 @@ struct PotentialKeys {
     if (elements.empty()) return all;
     const std::vector<std::string> names = wanted();
     for (const ParticleType& type : scene.rule.types) {
-      const std::string material = type.name.substr(0, type.name.find('/'));
+      const std::string material = material_of(type.name);
       const auto at = std::ranges::find(elements, material, &std::pair<std::string, std::string>::first);
       if (at == elements.end())
         table->fail(fmt::format("'elements' does not say which one the material '{}' is", material));

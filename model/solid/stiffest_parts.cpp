@@ -7,20 +7,13 @@
 #include <limits>
 #include <numeric>
 
+#include "model/contract/nearest_image.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
 namespace {
 
 constexpr int kMostParts = 8;
-
-// Displacements from x, to the nearest images.
-Vec3 displacement_from(const Vec3& x, const Vec3& y, const Periodic& periodic) {
-  Vec3 d = y - x;
-  for (int a = 0; a < 3; ++a)
-    if (periodic.extent[a] > 0) d[a] -= periodic.extent[a] * std::round(d[a] / periodic.extent[a]);
-  return d;
-}
 
 }  // namespace
 
@@ -65,7 +58,7 @@ double stiffest_parts_limit(const Rule& rule, const Body& body, const Periodic& 
     const auto centre = static_cast<size_t>(std::ranges::max_element(bound) - bound.begin());
     if (!(bound[centre] > stiffest)) break;
     for (size_t i = 0; i < body.size(); ++i)
-      distance2[i] = displacement_from(body.x[centre], body.x[i], periodic).squaredNorm();
+      distance2[i] = nearest_image(body.x[i] - body.x[centre], periodic).squaredNorm();
     std::iota(order.begin(), order.end(), 0U);
     const size_t count = std::min(size, body.size());
     const auto nearer = [&](uint32_t i, uint32_t j) {
@@ -76,7 +69,7 @@ double stiffest_parts_limit(const Rule& rule, const Body& body, const Periodic& 
     std::ranges::sort(order);
     Body part;
     for (const uint32_t i : order) {
-      part.x.push_back(displacement_from(body.x[centre], body.x[i], periodic));
+      part.x.push_back(nearest_image(body.x[i] - body.x[centre], periodic));
       part.type.push_back(body.type[i]);
       bound[i] = 0;
     }

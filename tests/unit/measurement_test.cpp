@@ -200,7 +200,7 @@ TEST(Coordination, OfFccIsTwelve) {
   for_each_near(perfect.x, perfect.box, 1.2, 1, [&](size_t, uint32_t i, std::span<const uint32_t> near) {
     EXPECT_EQ(near.size(), 12u);
     for (const uint32_t j : near)
-      EXPECT_NEAR(shortest(perfect.x[j] - perfect.x[i], perfect.box).norm(), 1, 1e-12);
+      EXPECT_NEAR(nearest_image(perfect.x[j] - perfect.x[i], perfect.box).norm(), 1, 1e-12);
     ++seen;
   });
   EXPECT_EQ(seen, perfect.x.size());
