@@ -80,7 +80,7 @@ END
 
 # A run that is cut leaves its progress, and goes on with either engine (sample_relaxer_tests.cpp has the other way). The moment to cut
 # is between the start of the program and the end of the run, wherever these are here.
-sed 's/\[12, 1, 1\]/[60, 1, 1]/; s/12, 1, 1/60, 1, 1/; s/cells = 1/cells = 2/' rod.toml >long.toml
+sed 's/\[12, 1, 1\]/[200, 1, 1]/; s/12, 1, 1/200, 1, 1/; s/cells = 1/cells = 2/' rod.toml >long.toml
 for delay in 0.1 0.15 0.22 0.33 0.5 0.75 1.1 1.7 2.5 4 6; do
   rm -rf cut
   ./cuboct multiscale long.toml --gpu --out cut >out 2>err &
