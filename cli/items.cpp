@@ -10,6 +10,11 @@
 #include "model/base/text.h"
 
 namespace cuboct {
+namespace {
+
+constexpr const char* kNone = "not there";  // no unit stands behind it
+
+}  // namespace
 
 void Items::add(const std::string& name, const std::string& text, const std::string& note) {
   items_.push_back({name, text, cuboct::json(text), "", note, false});
@@ -24,8 +29,8 @@ void Items::add(const std::string& name, int64_t value, const std::string& unit,
 }
 
 void Items::add(const std::string& name, double value, const std::string& unit, const std::string& note) {
-  items_.push_back({name, std::isnan(value) ? "not there" : fmt::format("{:.6g}", value), cuboct::json(value),
-                    unit, note, false});
+  items_.push_back({name, std::isnan(value) ? kNone : fmt::format("{:.6g}", value), cuboct::json(value), unit,
+                    note, false});
 }
 
 void Items::add_range(const std::string& name, double last, double smallest, double largest,
@@ -68,7 +73,7 @@ std::string Items::text() const {
       continue;
     }
     out += fmt::format("{:<{}}  {}", line_text(item.name), width, line_text(item.text));
-    if (!item.unit.empty()) out += fmt::format(" {}", line_text(item.unit));
+    if (!item.unit.empty() && item.text != kNone) out += fmt::format(" {}", line_text(item.unit));
     if (!item.note.empty()) out += fmt::format(" ({})", line_text(item.note));
     out += '\n';
   }

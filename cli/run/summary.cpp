@@ -163,14 +163,16 @@ Items summarise(const Loaded& loaded, const Recorded& run, bool real) {
   items.add("host time", trace.seconds, "s");
   add_speed(items, loaded.scene, trace, plan.particles);
 
+  // A body at rest under each load has neither.
+  const bool moves = !loaded.scene.loading;
   const char* forced = keeps_momentum(loaded.scene.rule) ? "" : "held or driven from outside";
-  if (real)
+  if (moves && real)
     items.add("momentum change", run.momentum_change, "kg m/s", forced);
-  else
+  else if (moves)
     items.add("momentum change", int64_t{std::lround(run.momentum_change)}, "LSB", forced);
 
   add_curves(items, loaded.scene, trace.curves);
-  items.add("largest speed", run.largest_speed, "cell/step");
+  if (moves) items.add("largest speed", run.largest_speed, "cell/step");
   if (const auto cycles = cycles_per_step(trace)) {
     items.add("mean cycles per step", cycles->mean);
     items.add("most cycles per step", cycles->max);

@@ -11,6 +11,7 @@
 #include "model/analysis/motion.h"
 #include "model/contract/format_cures.h"
 #include "model/contract/state.h"
+#include "model/program/rule_program.h"
 #include "model/rules/rounds_rule.h"
 
 namespace cuboct {
@@ -34,6 +35,16 @@ constexpr double kFewest = 0.1;
 constexpr int kScale = 16, kFilter = 10, kGain = 16;
 
 constexpr const char* kLeft = "as the run had that left the state";
+
+// Whether a text rubs along bonds that last. They may move slowly: nothing says how, and friction of what is
+// below a unit of a relative velocity is lost.
+bool rubs_for_ever(const Rule& rule) {
+  const RuleProgram* text = rule.rounds != nullptr ? rule.rounds->text() : nullptr;
+  return text != nullptr && has_reference_bonds(rule) &&
+         std::ranges::any_of(text->rounds, [](const ProgramRound& round) {
+           return round.pair.reads(RealSource::own_velocity) || round.pair.reads(RealSource::other_velocity);
+         });
+}
 
 // The least n with 2^-n <= x.
 int bits_for(double x) { return static_cast<int>(std::ceil(-std::log2(x) - 1e-9)); }
@@ -138,6 +149,9 @@ class Chooser {
     if (const double slow = accuracy_ * motion_.strain * motion_.sound_speed * dt / edge_; slow > 0)
       if (const int bits = bits_for(slow); bits > wanted)
         wanted = bits, why = fmt::format("damps what strains by {:.2g}", accuracy_ * motion_.strain);
+    int most_bits = kMostRelativeBits;
+    if (rubs_for_ever(scene_.rule))
+      wanted = w.velocity_frac(), most_bits = kWidestRelative, why = "bonds that last part slowly";
     if (left_ && left_->relative_velocity_frac > wanted) wanted = left_->relative_velocity_frac, why = kLeft;
     double fastest = 4 * motion_.initial_speed;
     for (const ParticleType& type : scene_.rule.types)
@@ -157,7 +171,7 @@ class Chooser {
     const int most =
         asked_.relative_velocity_bits != kAutomatic
             ? std::min(std::max(kLeastRelative, asked_.relative_velocity_bits - 1 - range), w.velocity_frac())
-            : std::min(w.velocity_frac(), kMostRelativeBits - 1 - range);
+            : std::min(w.velocity_frac(), most_bits - 1 - range);
     w.relative_velocity_frac =
         take("relative_velocity_frac", asked_.relative_velocity_frac, wanted, most, why);
     w.relative_velocity_bits =

@@ -19,6 +19,8 @@ namespace {
 
 // Fractional bits of a factor: model/program/integer_program.h.
 constexpr int kFactorFrac = 26;
+// What an estimate may be too low by: half where a slow load rings (docs/measured/accuracy.md).
+constexpr double kTooLow = 2;
 
 ProbeError error_of_field(const Scene& scene, const IntegerProgram& program, const Probe& probe) {
   ProbeError error{probe.name, {}, {}};
@@ -56,7 +58,7 @@ Lack lack_of(const Scene& scene, const std::vector<ProbeError>& errors) {
           .about({fmt::format("probe[{}].accuracy", probe.name)});
     const bool means = std::ranges::any_of(errors[k].curves, &CurveError::of_means);
     for (const CurveError& curve : errors[k].curves)
-      if (const double ratio = curve.error / probe.accuracy;
+      if (const double ratio = kTooLow * curve.error / probe.accuracy;
           curve.of_means == means && ratio > 1 && ratio > lack.ratio)
         lack = {&probe, curve, ratio};
   }
@@ -94,7 +96,7 @@ bool asks_accuracy(const Scene& scene) {
 
 void refine_for_probes(const Scene& scene, const Arch& arch, const CellEdges& edges, AutoWidths& chosen,
                        FixedRule& rule) {
-  // The least that any format asks for: a scene's least accuracy and what an estimate is above a part.
+  // The least that any format asks for: a scene's least accuracy and what twice an estimate is above a part.
   constexpr double kLeast = 1e-9;
   constexpr int kIdle = 8;  // halvings below which the least formats that are taken may all be enough
   const ProbeErrors errors(scene);
@@ -126,8 +128,9 @@ void refine_for_probes(const Scene& scene, const Arch& arch, const CellEdges& ed
   throw InputError(
       fmt::format("the {} of probe '{}' cannot be had within {:.2g}: the best that formats do is "
                   "about {:.2g}",
-                  best.curve.quantity, best.probe->name, best.probe->accuracy, best.curve.error),
-      fmt::format("accuracy = {:.2g}, or doubles (--engine reference)", two_digits_up(best.curve.error)))
+                  best.curve.quantity, best.probe->name, best.probe->accuracy, kTooLow * best.curve.error),
+      fmt::format("accuracy = {:.2g}, or doubles (--engine reference)",
+                  two_digits_up(kTooLow * best.curve.error)))
       .about({fmt::format("probe[{}].accuracy", best.probe->name)});
 }
 

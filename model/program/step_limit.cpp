@@ -19,6 +19,8 @@ constexpr size_t kMost = 4000;       // particles that are looked at
 constexpr double kChange = 1e-6;     // of the reach, of velocities, of a field's size
 constexpr double kSafety = 0.2;      // the step at which formulas of dt are looked at, over the limit
 constexpr int kSteps = 6;            // to find that step
+constexpr double kFurther = 1e4;     // a step over one in which fields change too little to be seen
+constexpr int kFurthest = 6;         // times that it is taken
 constexpr double kAlike = 0.01;      // two steps, or rates
 constexpr double kNoChange = 1e-13;  // of an update that rounds alone
 
@@ -276,9 +278,13 @@ StepLimit step_limit(const RuleProgram& program, const Rule& rule, const Body& b
       body.size() > kMost ? middle_of(body, program.reach, program.rounds.size()) : all_of(body, periodic);
   // Formulas of dt are looked at near the step that will be taken; others, with any.
   double dt = 1e-3 * program.reach / std::max(fastest(part.body), 1.0);
-  StepLimit limit;
+  StepLimit limit = limit_at(program, rule, part, dt);
+  const StepLimit nearest = limit;
+  for (int k = 0; k < kFurthest && limit.dt == 0 && reads(program, {RealSource::time_step}); ++k)
+    limit = limit_at(program, rule, part, dt *= kFurther);
+  if (limit.dt == 0) return nearest;
   for (int k = 0; k < kSteps; ++k) {
-    limit = limit_at(program, rule, part, dt);
+    if (k > 0) limit = limit_at(program, rule, part, dt);
     const double next = kSafety * limit.dt;
     if (limit.dt == 0 || !reads(program, {RealSource::time_step}) || std::abs(next - dt) < kAlike * dt) break;
     dt = next;

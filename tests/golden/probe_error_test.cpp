@@ -88,6 +88,42 @@ dt_safety = 0.5
 duration = "10 ms"
 )";
 
+// A bar between a floor and a plate that comes slowly. It rings, and damping ends long waves late.
+std::string pillar(const std::string& probe = "") {
+  return R"(density = "2.5 g/cm^3"
+gravity = "[0, 0, -9.81] m/s^2"
+[packing]
+pitch = "2 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[10, 10, 40] mm"
+[law]
+kind = "elastic"
+youngs_modulus = "2 GPa"
+direction = "z"
+[damping]
+ratio = 0.05
+[regions]
+top = { shape = "half_space", point = "[0, 0, 38.5] mm", normal = "-z" }
+[[constraint]]
+name = "floor"
+kind = "held"
+region = { shape = "half_space", point = "[0, 0, 1.5] mm", normal = "z" }
+[[constraint]]
+name = "plate"
+kind = "moved"
+velocity = "[0, 0, -0.1] m/s"
+region = "top"
+[[probe]]
+name = "push"
+kind = "force"
+axis = "z"
+region = "top"
+)" + probe +
+         "[run]\nduration = \"0.5 ms\"\n";
+}
+
 struct Compared {
   CurveError estimate;
   double measured = 0;
@@ -166,7 +202,7 @@ TEST(ProbeError, AskedOfAProbeChoosesFinerFormatsThatKeepIt) {
   EXPECT_GT(plan.rule.widths.difference_frac, before.rule.widths.difference_frac);
   EXPECT_GT(probe_errors(plain, before).front().curves.front().error, 2e-4);
   for (const auto& [estimate, measured] : compare(asking, {"tension.stress", "tension.strain"})) {
-    EXPECT_LE(estimate.error, 2e-4) << estimate.quantity;
+    EXPECT_LE(2 * estimate.error, 2e-4) << estimate.quantity;
     EXPECT_LE(measured, 2e-4) << estimate.quantity;
     EXPECT_GT(measured, 0) << estimate.quantity;
   }
@@ -176,6 +212,82 @@ TEST(ProbeError, AskedOfAProbeChoosesFinerFormatsThatKeepIt) {
   EXPECT_EQ(reason("strength_bits"), "by the accuracy of probe 'tension'");
   EXPECT_TRUE(reason("difference_frac").ends_with(", by the accuracy of probe 'tension'"))
       << reason("difference_frac");
+}
+
+// The estimate is too low there, by half at most, and what is asked for is kept all the same.
+TEST(ProbeError, AskedOfABarThatRingsIsKept) {
+  for (const auto& [estimate, measured] : compare(parse_scene(pillar(), "pillar.toml"), {"push.force"})) {
+    EXPECT_LT(estimate.error, measured);
+    EXPECT_GE(2 * estimate.error, 0.95 * measured);
+    EXPECT_GT(measured, 0.005);
+  }
+  for (const auto& [estimate, measured] :
+       compare(parse_scene(pillar("accuracy = 0.005\n"), "pillar.toml"), {"push.force"})) {
+    EXPECT_LE(2 * estimate.error, 0.005);
+    EXPECT_LE(measured, 0.005);
+  }
+}
+
+// A bar of text that takes up water from its left end, and swells. Its bonds rub at millimetres per second,
+// and part by 1e-7 of a cell in a step.
+TEST(ProbeError, ATextsFrictionOfSlowBondsIsKept) {
+  const auto swelling = [](const std::string& friction) {
+    return parse_scene(R"(density = "1200 kg/m^3"
+[packing]
+pitch = "1 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[20, 3, 3] mm"
+[regions]
+left = { shape = "half_space", point = "[1, 0, 0] mm", normal = "x" }
+[[probe]]
+name = "end"
+kind = "displacement"
+region = { shape = "half_space", point = "[19, 0, 0] mm", normal = "-x" }
+axis = "x"
+[run]
+duration = "2 ms"
+[rule]
+name = "moisture"
+bonds = "reference"
+reach = "1.2 * pitch"
+stiffness = "8 * spring"
+start.w = "select(inside(left), 1, 0)"
+start.wet = "inside(left)"
+[rule.parameters]
+spring = "20 kN/m"
+diffusivity = "1e-3 m^2/s"
+[rule.particle.w]
+range = [0, 1]
+[rule.particle.wet]
+kind = "truth"
+start = "false"
+[rule.let]
+rate = "diffusivity / (2 * pitch^2)"
+rest = "r0 * (1 + 0.02 * (w_i + w_j) / 2)"
+[[rule.round]]
+sum.flow = "rate * (w_j - w_i)"
+sum.force = "spring * (r - rest) / r * d)" +
+                           friction + R"("
+finish.w = "select(wet, w, w + dt * flow)"
+)",
+                       "moisture.toml");
+  };
+  const Scene rubbing = swelling(" + 0.02 kg/s * dot(v_j - v_i, d) / r^2 * d");
+  const Plan plan = plan_of(rubbing, {});
+  EXPECT_EQ(plan.rule.widths.relative_velocity_bits, 27);
+  EXPECT_LT(plan_of(swelling(""), {}).rule.widths.relative_velocity_bits, 27);
+  emu::LatticeRun request;
+  request.steps = request.hash_every = rubbing.steps;
+  request.engine.threads = 1;
+  request.probes = probe_steps_of(rubbing, rubbing.steps);
+  const Recorded run = emu::run_lattice(rubbing, plan, request);
+  EXPECT_FALSE(run.trace.stop);
+  const Recorded doubles = record(rubbing, scene_reference_kind(rubbing, plan, {}), request);
+  const std::vector<double> end = curve_of(doubles.trace.curves, "end.along");
+  EXPECT_GT(std::ranges::max(end), 1e-6);
+  EXPECT_LT(off_by(curve_of(run.trace.curves, "end.along"), end, false), 0.003);
 }
 
 TEST(ProbeError, AnAccuracyThatIsKeptChangesNothing) {

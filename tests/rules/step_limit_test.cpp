@@ -113,6 +113,26 @@ TEST(StepLimit, OfHeatIsTheFieldsOwn) {
   EXPECT_GT(most_different(1.1 * scene.dt_limit), 1e6);
 }
 
+// A step that suits waves at 1 m/s, and in which so slow a field changes by less than rounding.
+TEST(StepLimit, OfASlowFieldOnAFinePackingIsTheFieldsOwn) {
+  const auto oxygen = [](const std::string& pitch, const std::string& diffusivity) {
+    return timed_scene(
+        "density = \"7850 kg/m^3\"\npacking = { pitch = \"" + pitch +
+        "\" }\nbox = { periodic = \"xyz\", cells = [4, 4, 4] }\nrun = { dt = \"auto\", steps = 10 }\n"
+        "[rule]\nname = \"oxygen\"\nbonds = \"reference\"\nreach = \"1.2 * pitch\"\nstill = true\n"
+        "[rule.parameters]\ndiffusivity = \"" +
+        diffusivity +
+        "\"\n[rule.particle.c]\nrange = [0, 1]\n[rule.let]\nrate = \"diffusivity / (2 * pitch^2)\"\n"
+        "[[rule.round]]\nsum.flow = \"rate * (c_j - c_i)\"\nfinish.c = \"c + dt * flow\"\n");
+  };
+  const double slow = oxygen("1 um", "1e-13 m^2/s").dt_limit, coarse = oxygen("1 mm", "1e-7 m^2/s").dt_limit;
+  // R = 16 D/(2 a^2), as of heat.
+  EXPECT_GE(slow, 2 / 0.8 * (1 - 1e-6));
+  EXPECT_LT(slow, 2 / 0.8 * 1.03);
+  EXPECT_NEAR(slow, coarse, 1e-6 * slow);
+  EXPECT_GT(oxygen("1 um", "1e-22 m^2/s").dt_limit, 2e9);
+}
+
 TEST(StepLimit, IsUnknownWhereNothingAnswers) {
   EXPECT_EQ(refused_with([] { timed_scene(heat("\"auto\"", "T + 0.01 * gain")); }), CUBOCT_SOURCE_DIR
             "/scenes/rules/test.toml:5:14: no stability limit is known for this scene: no field of the rule "
