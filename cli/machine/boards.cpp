@@ -51,20 +51,21 @@ Plan on_boards(const Plan& plan, const DeviceCut& boards) {
 }
 
 // Mean cycles per step, and the number of steps.
-std::pair<double, uint64_t> cycles_of(const Plan& plan, const State& initial, uint64_t steps) {
-  const auto run = count_run(plan, initial, steps);
+std::pair<double, uint64_t> cycles_of(const Plan& plan, const State& initial, uint64_t steps,
+                                      const std::string& label) {
+  const auto run = count_run(plan, initial, steps, label);
   if (interrupted()) throw Failed("interrupted");
   if (!run) throw Failed("the first step breaks a width or a capacity", "'cuboct run' tells which");
   return {run->cycles.mean(), run->cycles.steps};
 }
 
 CountedPartition count(const Partition& p, const Plan& plan, const State& initial,
-                       const BoardsFindings& found) {
+                       const BoardsFindings& found, const std::string& label) {
   CountedPartition counted{p, 1, found.one_device, 0, 0};
   if (p.count() == 1) return counted;
   counted.devices = DeviceMap(plan.lattice, plan.bricks, p.boards).devices;
   const auto cycles = [&](int latency, int interval) {
-    return cycles_of(on_boards(plan, {p.boards.nodes, latency, interval}), initial, found.steps).first;
+    return cycles_of(on_boards(plan, {p.boards.nodes, latency, interval}), initial, found.steps, label).first;
   };
   counted.cycles = cycles(p.boards.latency, p.boards.interval);
   const double wide = p.boards.interval == 1 ? counted.cycles : cycles(found.link.latency(found.clock, 1), 1);
@@ -156,8 +157,12 @@ int boards(const BoardsOptions& options) {
   constexpr uint64_t kSteps = 20, kMostWork = 4'000'000;  // particles times steps, of each count
   const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
   std::tie(found.one_device, found.steps) =
-      cycles_of(plan, loaded.setup.initial, options.steps.value_or(std::min(kSteps, affordable)));
-  for (const Partition& p : ways) found.rows.push_back(count(p, plan, loaded.setup.initial, found));
+      cycles_of(plan, loaded.setup.initial, options.steps.value_or(std::min(kSteps, affordable)),
+                "cycles of one device");
+  for (const Partition& p : ways) {
+    const std::string label = fmt::format("cycles of partition {} of {}", found.rows.size() + 1, ways.size());
+    found.rows.push_back(count(p, plan, loaded.setup.initial, found, label));
+  }
   if (!options.write.empty()) {
     const std::string arch = options.input.arch;
     const std::string text = arch.empty() ? "name = \"default\"\n" : read_config_text(arch);

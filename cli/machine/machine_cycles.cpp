@@ -9,6 +9,7 @@
 #include "emu/timing/timing.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
+#include "model/base/progress.h"
 
 namespace cuboct {
 namespace {
@@ -25,7 +26,8 @@ std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial
   return run->cycles;
 }
 
-std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps) {
+std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps,
+                                    const std::string& label) {
   CountedRun run;
   run.nodes.resize(plan.nodes());
   CountedCycles& counted = run.cycles;
@@ -39,7 +41,9 @@ std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint
     if (plan.program == nullptr) kicks.emplace(plan, 0);
     std::vector<Particle> particles;
     std::vector<PhaseSpan> spans(spans_of_step(plan));
+    Progress progress(label, steps, plan.particles);
     while (counted.steps < steps && !interrupted()) {
+      progress.at(counted.steps);
       engine.slots(slots);
       particles.clear();
       if (kicks) engine.for_each_slot([&](const Particle& p) { particles.push_back(p); });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hw/cost/events.h"
@@ -18,11 +19,12 @@ inline constexpr uint64_t kCountedSteps = 200;
 std::optional<CountedCycles> count_cycles(const Plan& plan, const State& initial, uint64_t run_steps);
 
 // The same with what each node did; `steps` of them, fewer where a step breaks something or there is an
-// interrupt (model/base/interrupt.h).
+// interrupt (model/base/interrupt.h). A terminal shows how far it is, behind `label`.
 struct CountedRun {
   CountedCycles cycles;
   std::vector<MachineEvents> nodes;
 };
-std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps);
+std::optional<CountedRun> count_run(const Plan& plan, const State& initial, uint64_t steps,
+                                    const std::string& label = "cycles");
 
 }  // namespace cuboct

@@ -15,6 +15,7 @@
 #include "model/analysis/strained_cell.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
+#include "model/base/progress.h"
 #include "model/config/changes.h"
 #include "model/config/config.h"
 #include "model/scene/rule_cell.h"
@@ -115,6 +116,12 @@ ElasticFindings findings_of(const ElasticOptions& options, const Scene& scene) {
   out.scene = scene.path;
   out.cell = start.of;
   out.particles = start.cell.x.size();
+  StatusLine status;
+  const auto at_work = [&](const std::string& what) {
+    status.say(fmt::format("elastic: {}, {} particles ...", what, out.particles));
+  };
+  const auto strains = [&](int cell) { at_work(fmt::format("strained cell {} of 12", cell)); };
+  at_work("the cell at rest");
   if (options.relaxed) start.cell = without_stress(scene.rule, start.cell, options.threads);
   StrainedCell rest(scene.rule, start.cell, options.threads);
   out.relaxing = rest.relax();
@@ -122,15 +129,17 @@ ElasticFindings findings_of(const ElasticOptions& options, const Scene& scene) {
   out.strain = options.strain;
   out.by_sums = scene.rule.rounds == nullptr;
   const auto strained = [&](const CrystalCell& cell) {
-    return constants_by_strain(scene.rule, cell, options.strain, options.threads, out.evaluations);
+    return constants_by_strain(scene.rule, cell, options.strain, options.threads, out.evaluations, strains);
   };
-  out.sums = tensor_of(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations);
+  if (out.by_sums) at_work("lattice sums");
+  out.sums = tensor_of(scene.rule, rest.cell(), options.strain, options.threads, out.evaluations, strains);
   out.strained = out.by_sums ? strained(rest.cell()) : out.sums.c;
   // The grains of a box have no direction in common.
   if (scene.pitch > 0 && (scene.grains == 0 || out.particles == 1)) out.crystal = scene.orientation;
   if (out.crystal && out.particles == 1 && out.by_sums)
     out.cleavage = cleavage_of(scene.rule, rest.cell(), *out.crystal);
   for (int n = 2; n <= options.layers; ++n) {
+    at_work(fmt::format("slab of {} layers", n));
     const CrystalCell slab = without_stress(scene.rule, slab_of(scene, options.material, n), options.threads);
     const double by_strain = plane_modulus(strained(slab));
     out.slabs.push_back({n, slab.vectors(2, 2),

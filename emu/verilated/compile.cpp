@@ -12,6 +12,7 @@
 #include "model/base/hash.h"
 #include "model/base/host_compiler.h"
 #include "model/base/output.h"
+#include "model/base/progress.h"
 #include "model/base/text.h"
 
 namespace cuboct::emu {
@@ -106,6 +107,8 @@ std::string compile(const Build& build, const std::string& directory) {
   const fs::path result = home / (name + ".so"), log = home / (name + ".log");
   if (fs::exists(result)) return result.string();
 
+  StatusLine status;
+  status.say(fmt::format("compiles {} by Verilator, and keeps it ...", build.top));
   fs::remove(log, error);
   // One copy of the node's code serves all nodes of a lattice; inlined, the build takes minutes.
   write_text(

@@ -124,7 +124,7 @@ Mat3 StrainedCell::stress() const {
 }
 
 Matrix6 constants_by_strain(const Rule& rule, const CrystalCell& cell, double strain, int threads,
-                            uint64_t& evaluations) {
+                            uint64_t& evaluations, const Begins& begins) {
   Matrix6 out = Matrix6::Zero();
   for (int v = 0; v < 6; ++v) {
     const auto [a, b] = kVoigt[v];
@@ -133,6 +133,7 @@ Matrix6 constants_by_strain(const Rule& rule, const CrystalCell& cell, double st
     e(a, b) += strain / 2, e(b, a) += strain / 2;
     Mat3 slope = Mat3::Zero();
     for (const double sign : {-1.0, 1.0}) {
+      if (begins) begins(2 * v + (sign < 0 ? 1 : 2));
       StrainedCell strained(rule, cell, threads);
       strained.deform(Mat3::Identity() + sign * e);
       evaluations += strained.relax();
@@ -146,11 +147,11 @@ Matrix6 constants_by_strain(const Rule& rule, const CrystalCell& cell, double st
 }
 
 ElasticTensor tensor_of(const Rule& rule, const CrystalCell& cell, double strain, int threads,
-                        uint64_t& evaluations) {
+                        uint64_t& evaluations, const Begins& begins) {
   if (rule.rounds == nullptr) return elastic_tensor(rule, cell);
   ElasticTensor tensor;
   tensor.stress = StrainedCell(rule, cell, threads).stress();
-  tensor.c = constants_by_strain(rule, cell, strain, threads, evaluations);
+  tensor.c = constants_by_strain(rule, cell, strain, threads, evaluations, begins);
   return tensor;
 }
 

@@ -4,6 +4,7 @@
 // smaller than the cutoff. The rule is of pairs, or a text that refuse_cell() lets pass.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -48,13 +49,15 @@ class StrainedCell {
 };
 
 // Central differences of the stress, of strains of +-`strain` from a cell that is at rest. Both axes of a
-// strain repeat; the constants of the others are 0. `evaluations` counts forces.
+// strain repeat; the constants of the others are 0. `evaluations` counts forces. `begins` hears of each of
+// the twelve strained cells before it relaxes.
+using Begins = std::function<void(int cell)>;
 Matrix6 constants_by_strain(const Rule& rule, const CrystalCell& cell, double strain, int threads,
-                            uint64_t& evaluations);
+                            uint64_t& evaluations, const Begins& begins = {});
 
 // Of a rule of pairs elastic_tensor(), of another constants_by_strain() and the stress of the cell.
 ElasticTensor tensor_of(const Rule& rule, const CrystalCell& cell, double strain, int threads,
-                        uint64_t& evaluations);
+                        uint64_t& evaluations, const Begins& begins = {});
 
 // Strains the cell along its repeating axes until they carry no stress (Newton's method with tensor_of's
 // constants), and relaxes its particles.
