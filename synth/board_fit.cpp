@@ -86,7 +86,7 @@ InputError no_room(const std::string& scene, const Plan& plan, const Board& boar
 }  // namespace
 
 FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State& initial,
-                         const BoardChoice& choice, const std::function<void(const std::string&)>& says) {
+                         const BoardChoice& choice, const Hears& hears) {
   const Board& board = board_of(choice.name);
   const Target& target = target_of(board.target);
   const FitAmounts room = room_of(target);
@@ -103,8 +103,7 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
   }
   const bool tools = in_path("yosys") && (target.family != Family::ice40 || in_path("nextpnr-ice40"));
   if (!tools) return FitCheck::memories;
-  says("synthesises the board's design");
-  const Meter meter(target, [](const std::string&) {});
+  const Meter meter(target, hears);
   const auto measure = [&](Nodes nodes) {
     return meter.measure([&](const std::string& dir) { emit_rtl(plan, initial, dir, {.board = choice}); },
                          true, nodes);

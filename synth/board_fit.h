@@ -3,12 +3,12 @@
 // written.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "hw/plan/plan.h"
 #include "hw/rtl/board.h"
 #include "model/contract/state.h"
+#include "synth/tool.h"
 
 namespace cuboct::synth {
 
@@ -19,9 +19,9 @@ enum class FitCheck {
 };
 
 // `scene`: its name, for messages. Synthesises only what may have room for its memories; what was measured
-// before comes from the cache (Meter). `says` hears what it does. Throws InputError with the numbers, and how
+// before comes from the cache (Meter). `hears` is the meter's. Throws InputError with the numbers, and how
 // many nodes would fit, where there is no room; ToolFailed, Interrupted.
 FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State& initial,
-                         const BoardChoice& board, const std::function<void(const std::string& what)>& says);
+                         const BoardChoice& board, const Hears& hears);
 
 }  // namespace cuboct::synth

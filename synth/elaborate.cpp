@@ -64,11 +64,29 @@ Design read_design(const std::string& file, const std::string& prefix) {
       m.ports.push_back({port, what.at("direction") == "input", what.at("bits").size()});
     for (const auto& [cell, what] : module.at("cells").items()) {
       const std::string type = what.at("type");
-      if (json.at("modules").contains(type)) m.instances[cell] = type;
+      if (json.at("modules").contains(type)) {
+        m.instances[cell] = type;
+        continue;
+      }
+      if (!what.contains("port_directions")) continue;
+      const auto& directions = what.at("port_directions");
+      for (const auto& [port, bits] : what.at("connections").items())
+        if (directions.at(port) == "output") m.bits += bits.size();
     }
   }
   if (design.top.empty()) throw std::runtime_error(file + ": no top module");
   return design;
+}
+
+uint64_t bits_below(const Design& design, const std::string& module) {
+  std::map<std::string, uint64_t> known;
+  const std::function<uint64_t(const std::string&)> below = [&](const std::string& key) {
+    if (const auto found = known.find(key); found != known.end()) return found->second;
+    uint64_t bits = design.modules.at(key).bits;
+    for (const auto& [name, child] : design.modules.at(key).instances) bits += below(child);
+    return known[key] = bits;
+  };
+  return below(module);
 }
 
 std::string module_of(const Design& design, const std::string& unit) {

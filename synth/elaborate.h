@@ -19,6 +19,7 @@ struct Module {
   std::string base;         // its name in the library; the key of Design::modules says its parameters too
   std::vector<Port> ports;  // in the order of the source
   std::map<std::string, std::string> instances;  // name: key of the module
+  uint64_t bits = 0;                             // of the outputs of its own cells, before anything is mapped
 };
 
 struct Design {
@@ -29,6 +30,9 @@ struct Design {
 // Reads what yosys's write_json wrote after `hierarchy` and `proc`; blocks go by their names without
 // `prefix`. Throws std::runtime_error where it is something else.
 Design read_design(const std::string& file, const std::string& prefix = "");
+
+// Those bits of a module and of all below it: what synthesis has to work on.
+uint64_t bits_below(const Design& design, const std::string& module);
 
 // The module that `unit` ("pipe", "cuboct_pipe", "fifo#2") names: its key in the design. Blocks of one source
 // that are instantiated with different parameters are numbered from 1 in the order in which a walk from the

@@ -6,25 +6,22 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "model/base/error.h"
-#include "model/base/hash.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
-#include "model/base/resources.h"
 #include "synth/json_file.h"
 #include "synth/netlist.h"
 #include "synth/project.h"
 #include "synth/script.h"
 #include "synth/timing.h"
-#include "synth/tool.h"
 
 namespace cuboct::synth {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kMeasured = "measured.json";
 constexpr Resource kKept[] = {Resource::lut, Resource::ff, Resource::dsp, Resource::bram, Resource::cell};
 
 // What is synthesised of a project.
@@ -39,16 +36,6 @@ Synthesis whole(const std::string& directory, bool board, Nodes nodes, const std
   s.counts_only = true;
   s.out = out;
   return s;
-}
-
-// Comments name the plan that a file was made from; what the hardware is stands in the other lines.
-void add_code(Hash& hash, const std::string& text) {
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("//")) continue;
-    for (const char c : line) hash.add(c);
-    hash.add('\n');
-  }
 }
 
 // Nodes below a module that is flat but for them: each is a cell of its own.
@@ -74,8 +61,8 @@ Counts kept_counts(const nlohmann::json& json) {
 
 }  // namespace
 
-Meter::Meter(const Target& target, std::function<void(const std::string& what)> begins)
-    : target_(target), begins_(std::move(begins)) {
+Meter::Meter(const Target& target, Hears hears)
+    : target_(target), hears_(std::move(hears)), kept_(kept_in_cache("fit")) {
   need("yosys");
   tools_.push_back(first_line("yosys", "-V"));
   if (target.family == Family::ice40) {
@@ -84,23 +71,23 @@ Meter::Meter(const Target& target, std::function<void(const std::string& what)> 
   }
 }
 
-std::string Meter::key_of(const std::string& directory, bool board, Nodes nodes) const {
+InputKey Meter::key_of(const std::string& directory, bool board, Nodes nodes) const {
   Synthesis s = whole(directory, board, nodes, "");
-  Hash hash;
+  InputKey key;
   for (std::string& file : s.files) {
-    add_code(hash, read_text(file));
+    key.add_code(read_text(file));
     file = fs::path(file).filename().string();
   }
-  add_code(hash, fpga_script(s, target_));
-  for (const std::string& tool : tools_) add_code(hash, tool);
-  if (target_.family == Family::ice40) add_code(hash, target_.name);
-  return fmt::format("{:016x}", hash.value());
+  key.add(fpga_script(s, target_));
+  for (const std::string& tool : tools_) key.add(tool);
+  if (target_.family == Family::ice40) key.add(target_.name);
+  return key;
 }
 
 Measured Meter::run(const std::string& directory, bool board, Nodes nodes) const {
   const std::string out = directory + "/measure";
   make_directory(out);
-  const Runner runner(out, begins_);
+  const Runner runner(out, hears_);
   const Synthesis s = whole(directory, board, nodes, out);
   runner.write("synth.ys", fpga_script(s, target_));
   runner.run("yosys", "yosys", "yosys", {out + "/synth.ys"});
@@ -133,10 +120,8 @@ Measured Meter::measure(const std::function<void(const std::string& directory)>&
   const Scratch scratch;
   const std::string directory = scratch.path("project");
   emit(directory);
-  const std::string cache = cache_directory();
-  const std::string file = cache.empty() ? "" : cache + "/fit/" + key_of(directory, board, nodes) + ".json";
-  std::error_code none;
-  if (!file.empty() && fs::is_regular_file(file, none)) {
+  const std::string key = key_of(directory, board, nodes).text(), file = scratch.path(kMeasured);
+  if (kept_.take(key, scratch.path("."))) {
     try {
       const nlohmann::json json = read_json(file);
       return {kept_counts(json.at("node")), kept_counts(json.at("around")), json.at("nodes"), true};
@@ -145,16 +130,10 @@ Measured Meter::measure(const std::function<void(const std::string& directory)>&
     }
   }
   const Measured m = run(directory, board, nodes);
-  if (!file.empty()) {
-    try {
-      make_directory(cache + "/fit");
-      const nlohmann::ordered_json json = {
-          {"nodes", m.nodes}, {"node", to_json(m.node)}, {"around", to_json(m.around)}, {"tools", tools_}};
-      write_text(file, json.dump(2) + "\n");
-    } catch (const InputError&) {
-      // What cannot be kept is measured again another time.
-    }
-  }
+  const nlohmann::ordered_json json = {
+      {"nodes", m.nodes}, {"node", to_json(m.node)}, {"around", to_json(m.around)}, {"tools", tools_}};
+  write_text(file, json.dump(2) + "\n");
+  kept_.keep(key, scratch.path("."), {kMeasured});
   return m;
 }
 

@@ -7,7 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "synth/input_key.h"
+#include "synth/kept_files.h"
 #include "synth/target.h"
+#include "synth/tool.h"
 
 namespace cuboct::synth {
 
@@ -25,8 +28,8 @@ struct Measured {
 
 class Meter {
  public:
-  // `begins` hears of each tool before it runs. Throws InputError where a tool is missing.
-  Meter(const Target& target, std::function<void(const std::string& what)> begins);
+  // `hears` of each tool as Runner's. Throws InputError where a tool is missing.
+  Meter(const Target& target, Hears hears);
 
   // `emit` writes a project into the directory that it is given; `board`: with board/. Results are kept in
   // the user's cache directory, by the text of the RTL, the script and the versions of the tools. On ice40 a
@@ -36,14 +39,16 @@ class Meter {
                    Nodes nodes = Nodes::apart) const;
 
   const std::vector<std::string>& tools() const { return tools_; }  // versions
+  const std::string& kept() const { return kept_.directory(); }     // where results are kept, or empty
 
  private:
   Measured run(const std::string& directory, bool board, Nodes nodes) const;
-  std::string key_of(const std::string& directory, bool board, Nodes nodes) const;
+  InputKey key_of(const std::string& directory, bool board, Nodes nodes) const;
 
   const Target& target_;
-  std::function<void(const std::string&)> begins_;
+  Hears hears_;
   std::vector<std::string> tools_;
+  KeptFiles kept_;
 };
 
 }  // namespace cuboct::synth

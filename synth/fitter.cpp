@@ -8,7 +8,6 @@
 
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/interrupt.h"
-#include "model/base/resources.h"
 #include "model/config/changes.h"
 #include "model/config/config.h"
 #include "synth/tool.h"
@@ -76,7 +75,11 @@ Fitter::Fitter(const std::string& scene, const std::string& arch, const Target& 
       board_(board),
       says_(std::move(says)),
       tells_(std::move(tells)),
-      meter_(target, [this](const std::string&) { announce(); }),
+      meter_(target,
+             [this](const std::string& what, int seconds) {
+               announce();
+               if (seconds > 0) says_(fmt::format("{}: {}, {} s", at_work_, what, seconds));
+             }),
       scene_(read_scene(scene)),
       arch_text_(text_of(arch)),
       arch_(least(parse_arch(arch_text_, arch))),
@@ -185,8 +188,10 @@ void Fitter::find_shapes() {
 void Fitter::measure(const FitPoint& point) {
   if (measured(point)) return;
   if (interrupted()) throw Interrupted();
-  says_(fmt::format("synthesises nodes of {} x {} x {} cells, {} lanes, {} pipes ({} done)", point.brick[0],
-                    point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size()));
+  at_work_ =
+      fmt::format("synthesises nodes of {} x {} x {} cells, {} lanes, {} pipes ({} done)", point.brick[0],
+                  point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size());
+  says_(at_work_);
   const Plan plan = plan_at(point);
   const auto begin = std::chrono::steady_clock::now();
   const Measured m = meter_.measure(
@@ -222,9 +227,7 @@ void Fitter::announce() {
   tells_(line);
 }
 
-std::string Fitter::kept() const {
-  return syntheses_ == 0 || cache_directory().empty() ? "" : cache_directory() + "/fit";
-}
+std::string Fitter::kept() const { return syntheses_ == 0 ? "" : meter_.kept(); }
 
 void Fitter::choose() {
   says_("looks for bricks");

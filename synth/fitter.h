@@ -91,6 +91,7 @@ class Fitter {
   size_t syntheses_ = 0;  // made here, not found in the cache
   double seconds_ = 0;    // that these took
   bool announced_ = false;
+  std::string at_work_;  // what is being synthesised
   Meter meter_;
   Scene scene_;
   std::string arch_text_;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "synth/report.h"
+#include "synth/tool.h"
 
 namespace cuboct::synth {
 
@@ -21,12 +22,19 @@ struct Request {
   double activity = 0.1;  // asic: changes of each net per clock, for power
 };
 
+// What is said meanwhile.
+struct Told {
+  Say says = [](const std::string&) {};   // what is being done; the next takes its place
+  Say tells = [](const std::string&) {};  // lines that stay
+};
+
 // Where the results of a target and a unit are: DIR/synth/TARGET/UNIT.
 std::string results_directory(const Request& request);
 
 // Everything that a run leaves lies in results_directory, which appears whole at its end: report.json,
 // table.txt, logs, netlists, scripts, bitstream. A tool that fails leaves what there is in UNIT.failed beside
-// it. Throws InputError (a tool is missing, the unit does not fit, ...), ToolFailed, Interrupted.
-Report synthesise(const Request& request);
+// it. Throws InputError (a tool is missing, the unit does not fit, ...), ToolFailed, Interrupted. Stages that
+// ended are kept in the user's cache directory, by all that they are made of, and not made again.
+Report synthesise(const Request& request, const Told& told = {});
 
 }  // namespace cuboct::synth

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -26,10 +27,11 @@ const std::map<std::string, std::string> kPackages = {
 
 // yosys keeps a history of its commands in HOME, and leaves what it gave to abc in TMPDIR where it ends with
 // an error.
-int run_apart(const std::string& program, const std::vector<std::string>& arguments, const Streams& streams) {
+int run_apart(const std::string& program, const std::vector<std::string>& arguments, const Streams& streams,
+              const std::function<bool()>& meanwhile = {}) {
   const Scratch scratch;
   const std::string here = scratch.path(".");
-  return Process(program, arguments, false, streams, {"HOME=" + here, "TMPDIR=" + here}).wait();
+  return Process(program, arguments, false, streams, {"HOME=" + here, "TMPDIR=" + here}).wait({}, meanwhile);
 }
 
 }  // namespace
@@ -45,16 +47,24 @@ void need(const std::string& program) {
                                               : fmt::format("apt-get install {}", package->second));
 }
 
-Runner::Runner(std::string directory, std::function<void(const std::string&)> begins)
-    : directory_(std::move(directory)), begins_(std::move(begins)) {}
+Runner::Runner(std::string directory, Hears hears)
+    : directory_(std::move(directory)), hears_(std::move(hears)) {}
 
 void Runner::run(const std::string& what, const std::string& name, const std::string& program,
                  const std::vector<std::string>& arguments) const {
   need(program);
   if (interrupted()) throw Interrupted();
-  begins_(what);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  int heard = 0;  // seconds
+  hears_(what, heard);
+  const auto each_second = [&] {
+    const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - begin).count();
+    if (seconds > heard) hears_(what, heard = static_cast<int>(seconds));
+    return false;
+  };
   const std::string out = path(name + ".log"), err = path(name + ".err");
-  const int status = run_apart(program, arguments, {out, err});
+  const int status = run_apart(program, arguments, {out, err}, each_second);
   // One log: what went to stderr, if anything, after what went to stdout.
   {
     std::ofstream all(out, std::ios::app);

@@ -10,7 +10,14 @@
 namespace cuboct::synth {
 
 // Thrown where a signal asked to stop.
-struct Interrupted {};
+struct Interrupted {
+  std::string kept = {};  // where the stages that ended are kept; empty: none is
+};
+
+// A line for people, without the name of the command.
+using Say = std::function<void(const std::string&)>;
+// Hears of a tool before it runs, with 0, and then each second.
+using Hears = std::function<void(const std::string& what, int seconds)>;
 
 // A tool that ended badly. `what()` has its own error line; the log is whole.
 class ToolFailed : public std::runtime_error {
@@ -25,8 +32,7 @@ void need(const std::string& program);
 // Runs tools one after the other in one directory, each with a log of its own: everything that it says.
 class Runner {
  public:
-  // `begins` hears of each tool before it runs.
-  Runner(std::string directory, std::function<void(const std::string& what)> begins);
+  Runner(std::string directory, Hears hears);
 
   // The log is NAME.log. Throws ToolFailed, Interrupted.
   void run(const std::string& what, const std::string& name, const std::string& program,
@@ -36,7 +42,7 @@ class Runner {
 
  private:
   std::string directory_;
-  std::function<void(const std::string&)> begins_;
+  Hears hears_;
 };
 
 // First line of what `program argument` prints, or empty: a version.

@@ -3,14 +3,13 @@
 
 #include "cli/answer.h"
 #include "cli/machine/boards.h"
+#include "cli/machine/one_synthesis.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/program/integer_program.h"
-#include "synth/fit_measure.h"
 #include "synth/fit_model.h"
 #include "synth/target.h"
-#include "synth/tool.h"
 
 namespace cuboct {
 namespace {
@@ -31,10 +30,8 @@ synth::Measured measure(const Plan& plan, const synth::Target& target) {
     const Plan pair = two_nodes(plan);
     State one{0, {Particle{}}};  // for the project's bench; no RTL depends on it
     if (plan.program != nullptr) one.fields.resize(static_cast<size_t>(plan.program->program.numbers()));
-    return synth::Meter(target, [](const std::string&) {})
-        .measure([&](const std::string& directory) { emit_rtl(pair, one, directory); }, false);
-  } catch (const synth::ToolFailed& error) {
-    throw Failed(error.what());
+    return one_synthesis("boards", target,
+                         [&](const std::string& directory) { emit_rtl(pair, one, directory); });
   } catch (const synth::Interrupted&) {
     throw Failed("interrupted");
   }

@@ -1,50 +1,32 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "cli/machine/emit.h"
 #include "cli/machine/machine_cycles.h"
+#include "cli/machine/one_synthesis.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/interrupt.h"
-#include "model/base/progress.h"
 #include "model/base/text.h"
 #include "synth/board_fit.h"
 #include "synth/fitter.h"
+#include "synth/target.h"
 #include "synth/tool.h"
 
 namespace cuboct {
-namespace {
-
-void say(const std::string& what) {
-  if (stderr_is_terminal()) fmt::print(stderr, "\r\033[K{}", what.empty() ? "" : "fit: " + what + " ...");
-}
-
-// A line that stays.
-void tell(const std::string& line) {
-  say("");
-  fmt::print(stderr, "fit: {}\n", line);
-  std::fflush(stderr);
-}
-
-// Nothing of the progress is left where a search ends, however it does.
-struct Said {
-  ~Said() { say(""); }
-};
-
-}  // namespace
 
 void check_board(const Input& input, const Plan& plan, const State& initial, const BoardChoice& board) {
   catch_interrupts();
   try {
-    const Said said;
-    if (synth::check_board_fit(input.scene, plan, initial, board, say) == synth::FitCheck::memories)
+    ToolLines lines("fit");
+    const synth::Target& target = synth::target_of(board_of(board.name).target);
+    if (synth::check_board_fit(input.scene, plan, initial, board, hears_of_synthesis(lines, target)) ==
+        synth::FitCheck::memories)
       fmt::print(stderr,
                  "note: of the fit only memories were checked: yosys or nextpnr-ice40 is not in PATH\n");
   } catch (const synth::ToolFailed& error) {
     throw Failed(error.what());
-  } catch (const synth::Interrupted&) {
-    throw Failed("interrupted; nothing was written");
+  } catch (const synth::Interrupted& stop) {
+    throw interrupted_tools(stop, "syntheses");
   }
 }
 
@@ -54,16 +36,15 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
   check_emit_directory(out);
   catch_interrupts();
   try {
-    synth::Fitter fitter(input.scene, input.arch, device, emission.board, say, tell);
+    ToolLines lines("fit");
+    synth::Fitter fitter(input.scene, input.arch, device, emission.board, lines.says(), lines.tells());
     try {
-      const Said said;
       fitter.choose();
-    } catch (const synth::Interrupted&) {
-      if (fitter.kept().empty()) throw;
-      throw Failed("interrupted; nothing was written",
-                   fmt::format("the syntheses that ended are in {}: the same command goes on from there",
-                               fitter.kept()));
+    } catch (synth::Interrupted& stop) {
+      stop.kept = fitter.kept();
+      throw;
     }
+    lines.wipe();
     const Setup setup = fitter.setup();
     const std::string table = fitter.table();
     const std::optional<CountedCycles> counted = count_cycles(setup.plan, setup.initial, fitter.steps());
@@ -80,8 +61,8 @@ void emit_fitted(const Input& input, const std::string& target, const std::strin
     if (answer.json) answer.close(items);
   } catch (const synth::ToolFailed& error) {
     throw Failed(error.what());
-  } catch (const synth::Interrupted&) {
-    throw Failed("interrupted; nothing was written");
+  } catch (const synth::Interrupted& stop) {
+    throw interrupted_tools(stop, "syntheses");
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/answer.h"
 #include "cli/command.h"
+#include "cli/machine/tool_lines.h"
 #include "cli/programs.h"
 #include "hw/program/options.h"
 #include "model/base/text.h"
@@ -16,6 +17,7 @@ namespace cuboct {
 void add_synth(Command& app, int&) {
   struct Options {
     synth::Request request;
+    bool quiet = false;
     Answer answer;
   };
   auto options = std::make_shared<Options>();
@@ -46,19 +48,22 @@ void add_synth(Command& app, int&) {
       .range(0.0, 2.0)
       .type_name("A")
       .show_default();
+  command.flag("-q,--quiet", options->quiet, "nothing on stderr but errors: no line for each stage");
   options->answer.add_to(command);
   command.callback([options] {
     const synth::Request& asked = options->request;
     try {
-      const synth::Report report = synth::synthesise(asked);
+      ToolLines lines("synth", options->quiet);
+      const synth::Report report = synth::synthesise(asked, {lines.says(), lines.tells()});
+      lines.wipe();
       options->answer.say("{}{:<22} {}\n", block_text(synth::print_table(report)), "files",
                           line_text(synth::results_directory(asked)));
       options->answer.close(synth::report_json(report));
     } catch (const synth::ToolFailed& error) {
       throw Failed(error.what(),
                    fmt::format("its log is {}.failed/{}", synth::results_directory(asked), error.log));
-    } catch (const synth::Interrupted&) {
-      throw Failed("interrupted; nothing was written");
+    } catch (const synth::Interrupted& stop) {
+      throw interrupted_tools(stop, "stages");
     }
   });
 }

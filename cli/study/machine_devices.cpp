@@ -5,11 +5,10 @@
 #include <array>
 
 #include "cli/answer.h"
+#include "cli/machine/one_synthesis.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/process.h"
-#include "synth/fit_measure.h"
 #include "synth/node_estimate.h"
-#include "synth/tool.h"
 
 namespace cuboct {
 namespace {
@@ -48,10 +47,10 @@ bool can_synthesise() { return in_path("yosys"); }
 DeviceUse synthesised_use(const Setup& setup, const std::string& target) {
   const synth::Target& device = synth::target_of(target);
   try {
-    const synth::Meter meter(device, [](const std::string&) {});
-    const synth::Measured m =
-        meter.measure([&](const std::string& directory) { emit_rtl(setup.plan, setup.initial, directory); },
-                      false, setup.plan.nodes() == 1 ? synth::Nodes::flat : synth::Nodes::apart);
+    const synth::Measured m = one_synthesis(
+        "explore", device,
+        [&](const std::string& directory) { emit_rtl(setup.plan, setup.initial, directory); },
+        setup.plan.nodes() == 1 ? synth::Nodes::flat : synth::Nodes::apart);
     const auto all = [&](synth::Resource r) {
       const double count =
           static_cast<double>(m.node[r]) * static_cast<double>(m.nodes) + static_cast<double>(m.around[r]);
@@ -66,8 +65,6 @@ DeviceUse synthesised_use(const Setup& setup, const std::string& target) {
       use.share.band = {std::max(use.share.band.low, share), std::max(use.share.band.high, share)};
     }
     return use;
-  } catch (const synth::ToolFailed& error) {
-    throw Failed(error.what());
   } catch (const synth::Interrupted&) {
     throw Failed("interrupted; the same command goes on where it was");
   }

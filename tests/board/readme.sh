@@ -58,6 +58,7 @@ code=0
 cuboct emit "$scene" --arch "$root/scenes/archs/board.toml" --board icebreaker --out large > printed 2> said || code=$?
 if [ $code != 2 ] || [ -s printed ] || [ -e large ]; then fail "not refused: $code $(cat printed said)"; fi
 sed -E "s|$scene|SCENE|; s/[0-9]+\\//N\\//g" said | diff - <(cat <<SAID
+fit: a synthesis for up5k: seconds for small nodes, minutes for large ones
 SCENE: its 2 nodes and a host link do not fit the icebreaker (up5k): they take DSP N/8, BRAM N/30, logic cells N/5280, LUT N/5280, FF N/5280
   hint: not one such node fits; --fit up5k looks for a machine that fits, --unchecked writes this one for the simulator
 SAID

@@ -251,13 +251,13 @@ class Kinds:
         """Cells of a library; the netlist of one small block."""
         held = {f"out/{n}": d for n, d in self.shop["project"].items()}
         return self.spoilt(rng, self.shop["liberty"]["cells.lib"], mutate.TEXT, held, "in/cells.lib",
-                           ["synth", "out", "--target", "asic", "--unit", "filter", "--liberty", "in/cells.lib"])
+                           ["synth", "out", "--target", "asic", "--unit", "filter", "--liberty", "in/cells.lib", "--quiet"])
 
     def project(self, rng):
         held = self.shop["project"]
         names = ["project.json"] * 6 + [n for n in held if n.endswith((".sv", ".svh"))]
         return self.from_shop(rng, "project", "out", names, ("?",), {}, [
-            ["synth", "out", "--target", "up5k", "--unit", unit, "--no-place"] for unit in ("filter", "fifo", "nothing")])
+            ["synth", "out", "--target", "up5k", "--unit", unit, "--no-place", "--quiet"] for unit in ("filter", "fifo", "nothing")])
 
     def line(self, rng):
         """The command line alone."""

@@ -155,6 +155,6 @@ def judge(case, ended, before, after):
         found.append(("memory", f"{ended.peak >> 20} MiB"))
     if ended.left_running:
         found.append(("process left", "a child outlived the program"))
-    # cuboct-rtl keeps compiled nodes, as docs/reference/emulators.md says.
-    kept = ("home/.cache",) if case.program == "cuboct-rtl" else ()
+    # cuboct-rtl keeps compiled nodes, as docs/reference/emulators.md says; synth its stages (docs/reference/synth.md).
+    kept = ("home/.cache",) if case.program == "cuboct-rtl" or case.command[:1] == ["synth"] else ()
     return found + left(before, after, ended.code, ("out",) + kept + (named(case.command) if case.kind == "line" else ()))

@@ -8,6 +8,7 @@ cuboct=$1 here=$2 work=$3
 rm -rf "$work"
 mkdir -p "$work/bin"
 cd "$work"
+export XDG_CACHE_HOME=$work/cache
 fail() { echo "$1"; exit 1; }
 
 cat > bin/nextpnr-ecp5 <<'FAKE'

@@ -136,7 +136,7 @@ std::vector<Path> paths_of(const std::string& netlist, const Delays& delays) {
   const Scratch scratch;
   std::ofstream(scratch.path("netlist.json")) << netlist;
   const Timer timer(scratch.path("netlist.json"), "top", delays);
-  const Runner tools(scratch.path(""), [](const std::string&) {});
+  const Runner tools(scratch.path(""), [](const std::string&, int) {});
   tools.write("cells.lib", timer.library());
   tools.write("timed.v", timer.netlist());
   tools.write("wires.sdf", timer.wires());

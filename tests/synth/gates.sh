@@ -9,6 +9,7 @@ cuboct=$1 here=$2 work=$3
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
+export XDG_CACHE_HOME=$work/cache
 
 "$cuboct" emit "$here/sheet.toml" --arch "$here/narrow.toml" --out narrow --vector-steps 2
 "$cuboct" synth narrow --target up5k --no-place > printed

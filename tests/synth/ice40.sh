@@ -8,11 +8,12 @@ cuboct=$1 here=$2 work=$3
 rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
+export XDG_CACHE_HOME=$work/cache
 fail() { echo "$1"; exit 1; }
 
 "$cuboct" emit "$here/sheet.toml" --arch "$here/narrow.toml" --out narrow --vector-steps 1
-"$cuboct" synth narrow --target up5k --unit pipe > printed 2> said || { cat said; exit 1; }
-[ ! -s said ] || fail "not quiet in a pipe: $(cat said)"
+"$cuboct" synth narrow --target up5k --unit pipe --quiet > printed 2> said || { cat said; exit 1; }
+[ ! -s said ] || fail "not quiet: $(cat said)"
 results=narrow/synth/up5k/pipe
 [ "$(ls narrow/synth/up5k)" = pipe ] || fail "more than the results: $(ls narrow/synth/up5k)"
 diff <(sed '$d' printed) $results/table.txt || fail "what is printed is not what is stored"

@@ -194,7 +194,7 @@ TEST_F(Refuse, AToolWithoutItsData) {
   fs::permissions(scratch_.path("icetime"), fs::perms::owner_all);
   std::string told;
   try {
-    Runner(scratch_.path(""), [](const std::string&) {}).run("", "icetime", "icetime", {"-d", "up5k"});
+    Runner(scratch_.path(""), [](const std::string&, int) {}).run("", "icetime", "icetime", {"-d", "up5k"});
   } catch (const ToolFailed& error) {
     told = error.what();
   }
