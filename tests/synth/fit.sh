@@ -86,7 +86,7 @@ fit: 1: 1 x 1 x 1 cells a node, 1 lane, 1 pipe: N s, LUT N/5280, FF N/5280, DSP 
 sheet.toml: its 4 cells do not fit up5k with narrow memories: the nearest plan, 4 nodes of 1 x 1 x 1 cells with 1 lane and 1 pipe, takes LUT N/5280 (N times), DSP N/8 (N times), logic cells N/5280 (N times), FF N/5280, BRAM N/30
   hint: --fit ecp5-25 has room by these numbers; about 1 cell would fit up5k, some 2 particles of this scene; memories = "wide" have bricks
 SAID
-rm cache/cuboct/fit/*
+rm -r cache/cuboct/fit/*
 mkdir refused.dir && touch refused.dir/mine
 code=0
 "$cuboct" emit lone.toml --fit xc7 --out refused.dir > printed 2> said || code=$?
