@@ -9,6 +9,7 @@
 #include "hw/engine/scene_engine.h"
 #include "hw/program/options.h"
 #include "model/run/start.h"
+#include "model/run/static_engine.h"
 
 namespace cuboct {
 
@@ -53,6 +54,7 @@ Loaded load(const Input& input) {
 Loaded load_machine(const Input& input) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
   const Scene& scene = loaded.scene;
+  refuse_deform(scene, "a machine");
   const Arch arch = read_arch(input.arch);
   if (scene.rule.rounds == nullptr) {
     loaded.setup = make_setup(scene, arch);

@@ -208,13 +208,13 @@ void Simulation::go_to(uint64_t end, bool until) {
 }
 
 const Reading& Simulation::reading() {
-  if (!reading_) reading_ = engine_->read(meter_->asked({}, false));
+  if (!reading_) reading_ = engine_->read(meter_->asked({}, false, now()));
   return *reading_;
 }
 
 void Simulation::read_probes(bool energies) {
   const Meter::Parts parts{.energies = energies};
-  meter_->add(energies || reading_ ? reading() : engine_->read(meter_->asked(parts, false)), parts);
+  meter_->add(energies || reading_ ? reading() : engine_->read(meter_->asked(parts, false, now())), parts);
 }
 
 const Body& Simulation::present() {
@@ -344,7 +344,7 @@ void Simulation::change(const std::string& call, const std::function<void(Rule&)
   make_engine();
 }
 
-const StrainMeter& Simulation::strain() {
+StrainMeter& Simulation::strain() {
   if (strain_) return *strain_;
   if (real_ || text_) return strain_.emplace(strain_meter(scene_, scene_.packing().x));
   std::vector<Vec3> initial;
@@ -358,6 +358,7 @@ std::string Simulation::picture(const std::string& field, double limit, int widt
   const std::lock_guard lock(mutex_);
   const int axis = strain_axis(scene_);
   const Body& body = present();
+  strain().set_box(scene_.box_at(now()));
   Frame frame{now(),     static_cast<double>(now()) * dt(), body.x, body.v,
               body.type, strain().axial(body.x, axis)};
   frame.broken = strain().broken(

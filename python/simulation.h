@@ -84,7 +84,7 @@ class Simulation {
   void read_probes(bool energies);
   const Reading& reading();
   const Body& present();
-  const StrainMeter& strain();
+  StrainMeter& strain();
   uint64_t piece(uint64_t steps) const;
   void change(const std::string& call, const std::function<void(Rule&)>& edit);
   uint64_t now() const { return engine_->step_count(); }

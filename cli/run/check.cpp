@@ -283,7 +283,10 @@ Items physics(const Loaded& loaded) {
   const bool real = !has_machine(plan);
   const std::vector<std::string> warnings = check_warnings(loaded, real);
   if (real) {
-    if (scene.rule.rounds == nullptr) items.add("machine", std::string(kNoFormats));
+    if (scene.deforms())
+      items.add("machine", "none: the cells of a machine keep their size, and the box deforms");
+    else if (scene.rule.rounds == nullptr)
+      items.add("machine", std::string(kNoFormats));
     if (!warnings.empty()) add_warnings(items, warnings, {});
     return items;
   }

@@ -118,18 +118,21 @@ double energies_time(const EngineRow& engine, const Scene& scene, double particl
 // Of one reading of the probes, s. The lattice engine looks for the largest speed among all particles; others
 // make a state of them.
 double probes_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
-  constexpr double kParticle = 2e-9, kState = 40e-9, kProbed = 40e-9;
+  constexpr double kParticle = 2e-9, kState = 40e-9, kProbed = 40e-9, kPair = 10e-9;
   // Fields that go on from step to step are there as they are.
   const bool sums = std::ranges::any_of(scene.probes, [](const Probe& probe) {
     using enum Probe::Kind;
     return probe.kind != displacement && probe.kind != field && probe.kind != crack;
   });
+  const bool stress =
+      std::ranges::any_of(scene.probes, [](const Probe& probe) { return probe.kind == Probe::Kind::stress; });
   double probed = 0;
   for (const Probe& probe : scene.probes)
     for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
       probed += static_cast<double>(set->ids.size());
   const double of_sums = sums ? cost_of(engine, scene).neighbour_time * neighbours : 0;
-  const double each = engine.here == Here::lattice ? kParticle : kState + of_sums;
+  double each = engine.here == Here::lattice ? kParticle : kState + of_sums;
+  if (stress) each += kState + 2 * kPair * neighbours;
   return particles * each + probed * kProbed;
 }
 

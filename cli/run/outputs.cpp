@@ -44,13 +44,19 @@ int strain_axis(const Scene& scene) {
 }
 
 StrainMeter strain_meter(const Scene& scene, const std::vector<Vec3>& initial) {
-  return {initial, scene.periodic, first_shell(scene)};
+  return {initial, scene.packing_box(), first_shell(scene)};
 }
 
 FrameMaker::FrameMaker(const Loaded& loaded, bool whole)
     : loaded_(loaded), axis_(strain_axis(loaded.scene)), whole_(whole) {}
 
-const StrainMeter& FrameMaker::meter(bool fixed) const {
+const StrainMeter& FrameMaker::meter(bool fixed, const Frame& frame) const {
+  StrainMeter& meter = this->meter(fixed);
+  meter.set_box(frame.box ? *frame.box : loaded_.scene.periodic);
+  return meter;
+}
+
+StrainMeter& FrameMaker::meter(bool fixed) const {
   std::optional<StrainMeter>& meter = fixed ? fixed_ : real_;
   if (meter) return *meter;
   const Scene& scene = loaded_.scene;
@@ -66,12 +72,13 @@ void FrameMaker::measure(Frame& frame, bool fixed) const {
   const auto reach = [&](uint32_t i, uint32_t j) {
     return bond_reach(loaded_.scene.rule, frame.type[i], frame.type[j]);
   };
+  const StrainMeter& meter = this->meter(fixed, frame);
   if (!whole_) {
-    frame.strain = meter(fixed).axial(frame.x, axis_);
-    frame.broken = meter(fixed).broken(frame.x, reach);
+    frame.strain = meter.axial(frame.x, axis_);
+    frame.broken = meter.broken(frame.x, reach);
     return;
   }
-  for (const Deformation& one : meter(fixed).deformations(frame.x, axis_, reach)) {
+  for (const Deformation& one : meter.deformations(frame.x, axis_, reach)) {
     frame.strain.push_back(one.axial);
     frame.tensor.push_back(one.strain);
     frame.broken.push_back(one.broken);
@@ -89,6 +96,7 @@ Frame frame_of(const Loaded& loaded, const RealFrame& real) {
   const Scene& scene = loaded.scene;
   Frame frame{real.step, static_cast<double>(real.step) * scene.rule.dt, real.x, real.v, scene.body.type};
   frame.own = real.shown;
+  if (scene.deform) frame.box = scene.box_at(real.step);
   return frame;
 }
 

@@ -47,7 +47,8 @@ class FrameMaker {
  private:
   void measure(Frame& frame, bool fixed) const;
   // Against what the engine begins with: positions of the fixed rule, or the scene's own.
-  const StrainMeter& meter(bool fixed) const;
+  StrainMeter& meter(bool fixed) const;
+  const StrainMeter& meter(bool fixed, const Frame& frame) const;  // in the frame's box
 
   const Loaded& loaded_;
   int axis_;

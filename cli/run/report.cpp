@@ -22,6 +22,7 @@
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/quantity_text.h"
+#include "model/base/tensor.h"
 #include "model/base/text.h"
 #include "model/trace/compare.h"
 #include "model/trace/cycles.h"
@@ -194,6 +195,13 @@ std::string curve_section(const Loaded& loaded, const Trace& trace, const std::v
       for (const char axis : {'x', 'y', 'z'})
         names.emplace_back(probe.name + "." + probe.field + "_" + axis, std::string(1, axis));
       section(probe.field + ": " + probe.name, over_time(trace, dt, names, probe.field));
+      continue;
+    }
+    if (probe.kind == Probe::Kind::stress) {
+      std::vector<std::pair<std::string, std::string>> names;
+      for (const std::string& component : kTensorNames)
+        names.emplace_back(probe.name + "." + component, component);
+      section("Stress: " + probe.name, over_time(trace, dt, names, "stress"));
       continue;
     }
     const auto& [kind, title, label, whole, part] = *std::ranges::find(kProbed, probe.kind, &Probed::kind);

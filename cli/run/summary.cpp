@@ -86,6 +86,9 @@ void add_curves(Items& items, const Scene& scene, const std::vector<Curve>& curv
     if (curve.name != "energy.total" || curve.value.size() < 2) continue;
     if (scene.loading)
       energy("energy change", curve.value.back() - curve.value.front(), "by the loading");
+    else if (scene.deforms())
+      energy("energy change", curve.value.back() - curve.value.front(),
+             "by the box, and what drives or damps");
     else if (keeps_energy(scene.rule, scene.periodic))
       energy("energy drift", *high - *low, "largest minus smallest total");
     else

@@ -43,6 +43,7 @@ class Runner : public cuboct::Engine {
   void begin_fixed(CheckpointReader* from);
   void begin_real(CheckpointReader* from);
   void probe(std::span<const uint32_t> ids);
+  std::vector<Mat3> stress(std::span<const AskedStress> sets);
   void show(Watch& watch, const Energies& energies);
   Momentum momentum_of(const std::vector<Vec3>& v) const;
 
@@ -145,8 +146,23 @@ cuboct::Reading Runner::read(const Asked& asked) {
                           .v = std::move(read.v),
                           .energies = read.energies};
   if (asked.volume > 0) reading.stress = Mat3::Identity() * (-read.virial / (3 * asked.volume));
+  if (!asked.stress.empty()) reading.stress_volume = stress(asked.stress);
   if (asked.watch) show(*asked.watch, read.energies);
   return reading;
+}
+
+// On the host.
+std::vector<Mat3> Runner::stress(std::span<const AskedStress> sets) {
+  Asked asked;
+  asked.stress = sets;
+  if (fixed())
+    return read_state(scene_.rule, plan_.rule, plan_.lattice, plan_.origin, engine_->state(), asked, 0)
+        .stress_volume;
+  Body body = engine_->body();
+  body.type = scene_.body.type;
+  const Reference here(scene_.rule, body, scene_.periodic,
+                       RealOptions{.threads = reference_threads(body.size())});
+  return read_reference(scene_.rule, here, scene_.rule.dt / 2, asked).stress_volume;
 }
 
 // On the host.

@@ -125,7 +125,7 @@ void Runner::step() {
 
 // Probes ask for some particles: without a state of all.
 Reading Runner::read(const Asked& asked) {
-  if (asked.energies || ranks_ || failed_) return StateEngine::read(asked);
+  if (asked.energies || !asked.stress.empty() || ranks_ || failed_) return StateEngine::read(asked);
   std::vector<Int3> kicks(asked.ids.size());
   if (takes_kicks(asked) && !engine_->kicks(asked.ids, kicks)) return StateEngine::read(asked);
   Reading reading;

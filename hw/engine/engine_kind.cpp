@@ -96,6 +96,7 @@ EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptio
                           double cell_edge) {
   EngineKind kind;
   kind.name = "reference";
+  kind.deforms = true;
   kind.particles = start.size();
   kind.fixed = kind.keeps_state = false;
   kind.floats = options.precision == Precision::float32;

@@ -31,13 +31,14 @@ bool runs_text(const Scene& scene, const std::string& engine) {
 }  // namespace
 
 std::string engine_for(const Scene& scene) {
-  return scene.loading || scene.rule.rounds != nullptr ? "reference" : "lattice";
+  return scene.loading || scene.deforms() || scene.rule.rounds != nullptr ? "reference" : "lattice";
 }
 
 void check_runs(const Scene& scene, const Arch& arch, const std::string& engine) {
   if (engine_row(engine).here == Here::reference) return;
   const std::string who = fmt::format("the {} engine", engine);
   refuse_static(scene, who);
+  refuse_deform(scene, who);
   if (runs_text(scene, engine)) return;
   with_places(scene, arch, [&] { refuse_rounds(scene.rule, who); });
 }
@@ -45,8 +46,8 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
 Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine, bool real) {
   const EngineRow* row = find_engine(engine.empty() ? engine_for(scene) : engine);
   const CellForm form = row != nullptr && row->any_cells ? CellForm::any : CellForm::cubes;
-  if (!real && runs_text(scene, engine)) return program_plan_of(scene, arch, form);
-  if (scene.rule.rounds != nullptr) return real_plan_of(scene, arch);
+  if (!real && !scene.deforms() && runs_text(scene, engine)) return program_plan_of(scene, arch, form);
+  if (scene.rule.rounds != nullptr || scene.deforms()) return real_plan_of(scene, arch);
   const bool doubles = row != nullptr && row->here == Here::reference;
   try {
     return plan_of(scene, arch, form);
@@ -112,9 +113,7 @@ std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, co
     return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge, step, own);
   }
   if (scene.rule.rounds != nullptr) return std::make_unique<RoundsRun>(scene, body, options, cell_edge, step);
-  RealOptions from = options;
-  from.first_step = step;
-  return std::make_unique<ReferenceEngine>(scene, body, from, cell_edge);
+  return std::make_unique<ReferenceEngine>(scene, body, options, cell_edge, step);
 }
 
 }  // namespace cuboct

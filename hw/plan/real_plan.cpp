@@ -82,6 +82,9 @@ Plan real_plan_of(const Scene& scene, const Arch& arch) {
   add_types(hash, scene.rule);
   add(hash, scene.rule.dt);
   add(hash, scene.periodic.extent);
+  if (scene.deform)
+    for (const Vec3& value : {scene.deform->packed.extent, scene.deform->strain, scene.deform->per_step})
+      add(hash, value);
   if (scene.loading) {
     for (const uint64_t value : {scene.loading->every, scene.loading->evaluations})
       hash.add(static_cast<int64_t>(value));

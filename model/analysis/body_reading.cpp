@@ -11,6 +11,23 @@ std::vector<Vec3> velocities_at(const Rule& rule, const Body& body, const std::v
   return v;
 }
 
+std::vector<Mat3> summed_stress(const Rule& rule, const std::vector<uint8_t>& type,
+                                const std::vector<Vec3>& v, const std::vector<Mat3>& virial,
+                                std::span<const AskedStress> sets) {
+  std::vector<Mat3> sums;
+  for (const AskedStress& set : sets) {
+    Mat3 sum = Mat3::Zero();
+    const size_t count = set.all ? virial.size() : set.ids.size();
+    for (size_t k = 0; k < count; ++k) {
+      const size_t i = set.all ? k : set.ids[k];
+      sum += virial[i];
+      if (set.kinetic) sum -= rule.mass_of(type[i]) * v[i] * v[i].transpose();
+    }
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
 Reading read_body(const Rule& rule, const Body& body, const std::vector<Vec3>& force,
                   const std::vector<Vec3>& v, const Asked& asked) {
   Reading reading;

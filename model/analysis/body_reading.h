@@ -18,4 +18,10 @@ std::vector<Vec3> velocities_at(const Rule& rule, const Body& body, const std::v
 Reading read_body(const Rule& rule, const Body& body, const std::vector<Vec3>& force,
                   const std::vector<Vec3>& v, const Asked& asked);
 
+// Of each set the sum of its particles' stress times volume, J. `virial`: by id, without the kinetic part;
+// `v`: m/s at the time of the positions, by id, empty where no set takes that part.
+std::vector<Mat3> summed_stress(const Rule& rule, const std::vector<uint8_t>& type,
+                                const std::vector<Vec3>& v, const std::vector<Mat3>& virial,
+                                std::span<const AskedStress> sets);
+
 }  // namespace cuboct

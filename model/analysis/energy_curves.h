@@ -12,10 +12,11 @@ namespace cuboct {
 
 class EnergyCurves {
  public:
-  // Not `wanted`: no curves.
+  // Not `wanted`: no curves. Keeps a reference to `scene`.
   EnergyCurves(bool wanted, const Scene& scene);
   bool wanted() const { return !curves_.empty(); }
-  double volume() const { return volume_; }  // m^3, of a box that repeats along all axes; else 0
+  // m^3, of a box that repeats along all axes; else 0.
+  double volume(uint64_t step) const { return scene_.box_at(step).extent.prod(); }
   // `stress`, Pa: for the pressure alone.
   void add(uint64_t step, const Energies& energies, const Mat3& stress);
   // energy.kinetic, energy.potential, energy.gravity, energy.total in J; then, where the scene has them,
@@ -25,7 +26,7 @@ class EnergyCurves {
   void restore(std::vector<Curve> curves) { curves_ = std::move(curves); }
 
  private:
-  double volume_;
+  const Scene& scene_;
   Thermometer thermometer_;
   std::vector<Curve> curves_;
 };

@@ -10,6 +10,7 @@
 #include "model/analysis/state_reader.h"
 #include "model/analysis/strain.h"
 #include "model/base/parallel.h"
+#include "model/base/tensor.h"
 #include "model/contract/fixed_step.h"
 #include "model/contract/law_energies.h"
 
@@ -398,6 +399,11 @@ ProbeMeter::ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodi
         for (int k = 0; probe.numbers > 1 && k < probe.numbers; ++k)
           curve(probe.field + "_" + "xyz"[k], probe.unit);
         break;
+      case Probe::Kind::stress:
+        for (const std::string& component : kTensorNames) curve(component, "Pa");
+        for (int a = 0; probe.whole && a < 3; ++a)
+          if (periodic.extent[a] > 0) curve(std::string("strain_") + "xyz"[a], "1");
+        break;
     }
   }
 }
@@ -456,7 +462,7 @@ void ProbeMeter::add(const Sample& sample) {
     moved_[i] += nearest_image(sample.x[i] - latest_[i], periodic_);
     latest_[i] = sample.x[i];
   }
-  size_t next = 0, crack = 0;
+  size_t next = 0, crack = 0, stress = 0;
   const auto point = [&](double value) {
     curves_[next].step.push_back(sample.step);
     curves_[next++].value.push_back(value);
@@ -500,6 +506,14 @@ void ProbeMeter::add(const Sample& sample) {
       case Probe::Kind::field:
         for (int k = 0; k < probe.numbers; ++k) point(mean_of_field(sample.fields[probe.field_at], probe, k));
         break;
+      case Probe::Kind::stress: {
+        const Mat3 of = sample.stress_volume.at(stress++) /
+                        (probe.volume > 0 ? probe.volume : probe.share * sample.box_volume);
+        for (const auto& [a, b] : kTensorPlaces) point(of(a, b));
+        for (int a = 0; probe.whole && a < 3; ++a)
+          if (periodic_.extent[a] > 0) point(sample.box_strain[a]);
+        break;
+      }
     }
 }
 

@@ -86,6 +86,9 @@ struct Sample {
   std::vector<Vec3> force;                       // N, of the pairs
   std::vector<Vec3> v;                           // m/s, at the time of the positions
   std::vector<std::vector<double>> fields = {};  // as Reading::fields
+  std::vector<Mat3> stress_volume = {};          // J, of each stress probe; as Reading::stress_volume
+  double box_volume = 0;                         // m^3, now; of a box that repeats along all axes
+  Vec3 box_strain = Vec3::Zero();                // 1, of the lengths as packed
 };
 
 Sample sample_of(const FixedRule& rule, const Lattice& lattice, const Vec3& origin, const State& state,
@@ -108,11 +111,15 @@ std::vector<Probe> placed(std::vector<Probe> probes, const std::vector<uint32_t>
 //   velocity       <name>.velocity_x, _y, _z            m/s; with an axis <name>.velocity
 //   kinetic_energy <name>.kinetic_energy                J
 //   temperature    <name>.temperature                   K, in reduced units J
+//   stress         <name>.xx, .yy, .zz, .xy, .xz, .yz   Pa, positive in tension
+//                  <name>.strain_x, .strain_y, .strain_z  1, of the box, along axes that repeat
 class ProbeMeter {
  public:
   // `initial`: positions at step 0, from which displacements and strains count.
   ProbeMeter(const std::vector<Probe>& probes, const Periodic& periodic, const std::vector<Vec3>& initial);
 
+  // The box of the samples from now on: of the same axes.
+  void set_box(const Periodic& periodic) { periodic_ = periodic; }
   // Samples come in the order of steps, close enough that no particle moves half a period between two of
   // them.
   void add(const Sample& sample);

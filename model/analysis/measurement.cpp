@@ -39,12 +39,14 @@ double spacing(const Scene& scene) {
   return scene.rule.cutoff() / 2;
 }
 
-// At most what periods allow.
-double within_box(double range, const Periodic& periodic) {
+// At most what periods allow: those of both boxes.
+double within_box(double range, const Periodic& periodic, const Periodic& other) {
   for (int axis = 0; axis < 3; ++axis)
-    if (periodic.extent[axis] > 0) range = std::min(range, periodic.extent[axis] / 2);
+    if (periodic.extent[axis] > 0)
+      range = std::min({range, periodic.extent[axis] / 2, other.extent[axis] / 2});
   return range;
 }
+double within_box(double range, const Periodic& periodic) { return within_box(range, periodic, periodic); }
 
 std::vector<std::string> material_names(const Scene& scene) {
   std::vector<std::string> names;
@@ -87,11 +89,15 @@ struct Volume {
   double value;  // m^3
   std::string of;
   bool fills = true;  // the particles, without a surface
+  bool box = false;   // that of each frame's box
+  double at(const Scene& scene, uint64_t step) const {
+    return box ? scene.box_at(step).extent.prod() : value;
+  }
 };
 
 Volume volume_of(const Scene& scene, const MeasureChoice& choice) {
   if (choice.volume) return {*choice.volume, choice.option + "volume", all_periodic(scene)};
-  if (all_periodic(scene)) return {scene.periodic.extent.prod(), "the periodic box"};
+  if (all_periodic(scene)) return {scene.periodic.extent.prod(), "the periodic box", true, scene.deforms()};
   const bool atoms = scene.rule.rounds && !scene.rule.rounds->element().empty();
   if (scene.pitch == 0 || atoms)
     throw InputError("the body's volume is not known: its box does not repeat along x, y and z",
@@ -134,16 +140,24 @@ class RdfMeasure : public Measure {
   RdfMeasure(const Scene& scene, const MeasureChoice& choice)
       : scene_(scene), choice_(choice), volume_(volume_of(scene, choice)), meter_(meter_of(scene, choice)) {}
 
-  void add(const Snapshot& now) override { meter_.add(now.body.x); }
+  void add(const Snapshot& now) override {
+    meter_.set_box(scene_.box_at(now.step));
+    meter_.add(now.body.x);
+    inverse_volume_ += 1 / volume_.at(scene_, now.step);
+    ++frames_;
+  }
   Measured result() override {
-    const Rdf rdf = meter_.result(volume_.value);
+    // Densities of frames have a mean, not their volumes.
+    const double volume =
+        volume_.box && frames_ > 0 ? static_cast<double>(frames_) / inverse_volume_ : volume_.value;
+    const Rdf rdf = meter_.result(volume);
     Measured out;
     const double number = static_cast<double>(scene_.body.size());
     const double cutoff = rdf.width * static_cast<double>(rdf.g.size());
-    out.notes = {{"cutoff", fmt::format("{} in {} bins", told(scene_, cutoff, "m"), rdf.g.size())},
-                 {"density", fmt::format("{}: {} particles over the volume of {}",
-                                         told(scene_, number / volume_.value, "1/m^3"), scene_.body.size(),
-                                         volume_.of)}};
+    out.notes = {
+        {"cutoff", fmt::format("{} in {} bins", told(scene_, cutoff, "m"), rdf.g.size())},
+        {"density", fmt::format("{}: {} particles over the volume of {}",
+                                told(scene_, number / volume, "1/m^3"), scene_.body.size(), volume_.of)}};
     if (!volume_.fills)
       out.notes.emplace_back(
           "surfaces", "g(r) falls below 1 with r, as particles at the surface have neighbours on one side");
@@ -168,7 +182,8 @@ class RdfMeasure : public Measure {
           "A,B: those of B about those of A; A,A of one with itself");
     if (!choice.types.empty())
       sets = {particles_of(scene, choice.types[0]), particles_of(scene, choice.types[1])};
-    const double cutoff = choice.cutoff.value_or(within_box(kRdfReach * spacing(scene), scene.periodic));
+    const double cutoff = choice.cutoff.value_or(
+        within_box(kRdfReach * spacing(scene), scene.periodic, scene.box_at(scene.steps)));
     return {scene.periodic, cutoff, choice.bins.value_or(kBins), std::move(sets), choice.threads};
   }
 
@@ -176,6 +191,8 @@ class RdfMeasure : public Measure {
   const MeasureChoice choice_;
   const Volume volume_;
   RdfMeter meter_;
+  double inverse_volume_ = 0;  // 1/m^3, summed over frames
+  size_t frames_ = 0;
 };
 
 class MsdMeasure : public Rows {
@@ -195,6 +212,7 @@ class MsdMeasure : public Rows {
       meter_.emplace(scene_.periodic, now.wrapped);
       notes_.emplace(notes_.begin(), "from", fmt::format("step {}", now.step));
     }
+    // A box that deforms carries its particles: that way counts. Its frames are not wrapped.
     // Of a rule with noise or bonds the mean velocity tells nothing of the way: it does not last.
     meter_->add(now.step, now.body.x, scene_.rule.rounds ? std::vector<Vec3>() : now.body.v, scene_.rule.dt);
     const Vec3 squares = mean_squared(meter_->moved(), counted_, masses_);
@@ -224,9 +242,9 @@ class CoordinationMeasure : public Rows {
 
   void add(const Snapshot& now) override {
     const Body& body = now.body;
+    const Periodic box = scene_.box_at(now.step);
     if (cutoff_ == 0) {
-      RdfMeter meter(scene_.periodic, within_box(kRdfReach * spacing(scene_), scene_.periodic), kBins, {},
-                     choice_.threads);
+      RdfMeter meter(box, within_box(kRdfReach * spacing(scene_), box), kBins, {}, choice_.threads);
       meter.add(body.x);
       const double least = first_minimum(meter.result(1));
       if (least == 0)
@@ -236,7 +254,8 @@ class CoordinationMeasure : public Rows {
     }
     std::vector<double>& of = particles_.values;
     of.assign(body.size(), 0);
-    for_each_near(body.x, scene_.periodic, cutoff_, choice_.threads,
+    check_range(cutoff_, box, "cutoff");
+    for_each_near(body.x, box, cutoff_, choice_.threads,
                   [&](size_t, uint32_t i, std::span<const uint32_t> near) {
                     of[i] = static_cast<double>(near.size());
                   });
@@ -287,9 +306,10 @@ class CnaMeasure : public Rows {
 
   void add(const Snapshot& now) override {
     const std::vector<Vec3>& x = now.body.x;
+    const Periodic box = scene_.box_at(now.step);
     const std::vector<Structure> of =
-        choice_.cutoff ? structures_within(x, scene_.periodic, *choice_.cutoff, choice_.threads)
-                       : structures_adaptive(x, scene_.periodic, reach_, choice_.threads);
+        choice_.cutoff ? structures_within(x, box, *choice_.cutoff, choice_.threads)
+                       : structures_adaptive(x, box, within_box(reach_, box), choice_.threads);
     std::vector<double> counts(kStructures, 0);
     particles_.values.clear();
     for (size_t i = 0; i < of.size(); ++i) {
@@ -317,22 +337,24 @@ class StressMeasure : public Rows {
     for (const std::string& name : kTensorNames) column(name, "Pa");
     column("pressure", "Pa");
     particles_ = {"stress_volume", "J", kTensorNames};
-    note("volume", fmt::format("{}, of {}", told(scene, volume_.value, "m^3"), volume_.of));
+    note("volume", volume_.box ? "of the periodic box of each frame"
+                               : fmt::format("{}, of {}", told(scene, volume_.value, "m^3"), volume_.of));
     note("kinetic part",
          kinetic_ ? "counts; " + choice.option + "virial leaves it out" : std::string("left out"));
     note("sign", "stress is positive in tension; pressure is minus a third of its trace");
   }
 
   void add(const Snapshot& now) override {
-    constexpr int kAt[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
+    const double volume = volume_.at(scene_, now.step);
+    stress_.set_box(scene_.box_at(now.step));
     const std::vector<Mat3> of = stress_.of(now.body, kinetic_, now.late);
     std::vector<double> sum(7, 0);
     particles_.values.clear();
     for (size_t i = 0; i < of.size(); ++i)
       for (size_t k = 0; k < 6; ++k) {
-        const double value = of[i](kAt[k][0], kAt[k][1]);
+        const double value = of[i](kTensorPlaces[k].first, kTensorPlaces[k].second);
         particles_.values.push_back(value);
-        if (counted_.empty() || counted_[i]) sum[k] += value / volume_.value;
+        if (counted_.empty() || counted_[i]) sum[k] += value / volume;
       }
     sum[6] = -(sum[0] + sum[1] + sum[2]) / 3;
     row(now, sum);

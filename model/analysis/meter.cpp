@@ -20,7 +20,8 @@ std::vector<Vec3> places_of(const std::vector<uint32_t>& ids, const std::functio
 }  // namespace
 
 Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, const MeterOptions& options)
-    : ids_(ids_of(scene, options.probes)),
+    : scene_(scene),
+      ids_(ids_of(scene, options.probes)),
       probes_(options.probes ? placed(scene.probes, ids_) : std::vector<Probe>(), scene.periodic,
               places_of(ids_, initial)),
       energy_(options.energies, scene) {
@@ -29,28 +30,34 @@ Meter::Meter(const Scene& scene, const std::function<Vec3(uint32_t)>& initial, c
       forces_ |= probe.kind == Probe::Kind::force || probe.kind == Probe::Kind::stress_strain;
       velocities_ |= probe.kind >= Probe::Kind::velocity && probe.kind <= Probe::Kind::temperature;
       fields_ |= probe.kind == Probe::Kind::field;
+      if (probe.kind == Probe::Kind::stress) stress_.push_back({probe.set.ids, probe.whole, probe.kinetic});
     }
   // What a run is watched for is of pair laws.
   const bool watch = options.watch && scene.rule.rounds == nullptr;
   if (options.energies && watch) watch_.emplace(scene, options.table_error, options.threads);
 }
 
-Asked Meter::asked(const Parts& parts, bool look) {
+Asked Meter::asked(const Parts& parts, bool look, uint64_t step) {
   Asked asked;
   if (parts.energies && energy_.wanted()) {
     asked.energies = true;
-    asked.volume = energy_.volume();
+    asked.volume = energy_.volume(step);
     if (look && watch_) asked.watch = &*watch_;
   }
   if (!parts.probes) return asked;
   asked.ids = ids_;
+  asked.stress = stress_;
   asked.forces = forces_, asked.velocities = velocities_, asked.fields = fields_;
   return asked;
 }
 
 void Meter::add(const Reading& reading, const Parts& parts) {
-  if (parts.probes && !probes_.curves().empty())
-    probes_.add({reading.step, reading.x, reading.force, reading.v, reading.fields});
+  if (parts.probes && !probes_.curves().empty()) {
+    const Periodic box = scene_.box_at(reading.step);
+    probes_.set_box(box);
+    probes_.add({reading.step, reading.x, reading.force, reading.v, reading.fields, reading.stress_volume,
+                 box.extent.prod(), scene_.deform ? scene_.deform->strain_at(reading.step) : Vec3::Zero()});
+  }
   if (parts.energies) energy_.add(reading.step, reading.energies, reading.stress);
 }
 

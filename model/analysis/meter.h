@@ -30,8 +30,9 @@ class Meter {
   struct Parts {
     bool probes = true, energies = true;
   };
-  // What is to be read of the engine. With `look`, the watch sees the state too, where energies are read.
-  Asked asked(const Parts& parts, bool look);
+  // What is to be read of the engine at `step`. With `look`, the watch sees the state too, where energies are
+  // read.
+  Asked asked(const Parts& parts, bool look, uint64_t step);
 
   // Readings come in the order of steps.
   void add(const Reading& reading, const Parts& parts);
@@ -59,10 +60,12 @@ class Meter {
   void restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves);
 
  private:
+  const Scene& scene_;
   std::vector<uint32_t> ids_;  // particles in any probe's set, ascending: the probes' ids index this list
   ProbeMeter probes_;
   EnergyCurves energy_;
   bool forces_ = false, velocities_ = false, fields_ = false;  // some probe needs them
+  std::vector<AskedStress> stress_;                            // of the probes of that kind, in their order
   std::optional<Watch> watch_;
 };
 

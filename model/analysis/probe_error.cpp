@@ -114,6 +114,8 @@ class ProbeErrors::Estimate {
     ProbeError error{probe.name, {}, {}, breaks_};
     if (scene_.steps == 0) return refused(std::move(error), "the run has no steps");
     if (probe.kind == Probe::Kind::crack) return crack(std::move(error));
+    if (probe.kind == Probe::Kind::stress)
+      return refused(std::move(error), "by the law in doubles at the places of the run");
     if (scene_.thermal) return thermal(probe, std::move(error));
     const ParticleSet& set = probe.kind == Probe::Kind::stress_strain ? probe.grip : probe.set;
     if (set.ids.empty()) return refused(std::move(error), "its region has no particles");

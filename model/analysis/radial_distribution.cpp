@@ -17,6 +17,11 @@ RdfMeter::RdfMeter(const Periodic& periodic, double cutoff, size_t bins, RdfSets
   check_range(cutoff, periodic, "cutoff");
 }
 
+void RdfMeter::set_box(const Periodic& periodic) {
+  check_range(cutoff_, periodic, "cutoff");
+  periodic_ = periodic;
+}
+
 void RdfMeter::add(const std::vector<Vec3>& x) {
   const size_t bins = pairs_.size();
   const double per_width = 1 / (cutoff_ / static_cast<double>(bins));

@@ -30,6 +30,8 @@ class RdfMeter {
   // `cutoff` (m): where the last of `bins` ends. InputError where a period is below two cutoffs.
   RdfMeter(const Periodic& periodic, double cutoff, size_t bins, RdfSets sets = {}, int threads = 0);
 
+  // The box of the frames from now on: of the same axes. InputError as of the constructor.
+  void set_box(const Periodic& periodic);
   // Frames of the same particles.
   void add(const std::vector<Vec3>& x);
 

@@ -12,12 +12,20 @@
 
 namespace cuboct {
 
+// A set of particles whose stress is wanted.
+struct AskedStress {
+  std::span<const uint32_t> ids;  // not of `all`
+  bool all = false;
+  bool kinetic = true;  // with the part of the motion
+};
+
 struct Asked {
   std::span<const uint32_t> ids;  // whose positions are wanted, ascending
   bool forces = false;            // of those particles
   bool velocities = false;        // of those particles
   bool energies = false;
-  bool fields = false;     // of those particles, what the rule's declaration shows
+  bool fields = false;  // of those particles, what the rule's declaration shows
+  std::span<const AskedStress> stress = {};
   double volume = 0;       // m^3: with energies, the virial stress over it; 0: none
   Watch* watch = nullptr;  // to be shown the state; of use with energies alone
 };
@@ -31,7 +39,15 @@ struct Reading {
   std::vector<std::vector<double>> fields = {};
   Energies energies;
   Mat3 stress = Mat3::Zero();  // Pa, tension positive, without its kinetic part
+  // Of each set of Asked::stress, J: the sum over its particles of stress times volume, tension positive; as
+  // ParticleStress::of (model/analysis/particle_stress.h).
+  std::vector<Mat3> stress_volume = {};
 };
+
+// Whether a reading takes all particles' velocities at the time of their positions.
+bool takes_velocities(const Asked& asked);
+// Whether it takes the forces of the pairs, by which those velocities are known.
+bool takes_forces(const Asked& asked);
 
 // `threads`: 0 for one per core; no bit depends on their number.
 Reading read_state(const Rule& rule, const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,

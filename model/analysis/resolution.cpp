@@ -182,6 +182,7 @@ std::optional<Resolution::Lack> Resolution::see(const Moment& moment) {
 
 // A controller leads its anchor, and what it leads lags behind by u.
 std::optional<Resolution::Lack> Resolution::see_led(const Moment& moment) const {
+  if (scene_.deforms()) return std::nullopt;  // the box carries them besides
   const double time = static_cast<double>(moment.step) * scene_.rule.dt;
   for (const Led& led : led_) {
     const ParticleType& type = scene_.rule.types[led.type];

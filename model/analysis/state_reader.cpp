@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/state_reader.h"
 
+#include "model/analysis/body_reading.h"
+
 namespace cuboct {
 
 ParticleReader::ParticleReader(const FixedRule& fixed, const Lattice& lattice, const Vec3& origin,
@@ -48,6 +50,17 @@ Reading StateReader::read(const State& state, const Asked& asked, std::vector<In
   particles.make_room(asked.ids.size(), reading);
   for (const uint32_t id : asked.ids)
     particles.add(state.particles[id], kicks.empty() ? Int3{} : kicks[id], reading);
+  if (!asked.stress.empty()) {
+    // By the pair law in doubles at the fixed positions, as the potential energy is.
+    const CellEdges edges = fixed_.edges();
+    Periodic box{.origin = origin_};
+    for (int a = 0; a < 3; ++a) box.extent[a] = lattice_.period()[a] * edges[a];
+    if (!stress_) stress_.emplace(rule_, box, threads_);
+    std::vector<Vec3> v;
+    for (size_t i = 0; i < kicks.size(); ++i) v.push_back(velocity_of(fixed_, state.particles[i], kicks[i]));
+    const Body body = to_real(state, fixed_, lattice_, origin_);
+    reading.stress_volume = summed_stress(rule_, body.type, v, stress_->virial(body), asked.stress);
+  }
   if (!asked.energies) return reading;
   near_.take(state);
   ClosestPair closest;

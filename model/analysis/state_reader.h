@@ -2,9 +2,11 @@
 // Readings of one run's states, one after another: what it costs to find near pairs is shared between them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "model/analysis/near_pairs.h"
+#include "model/analysis/particle_stress.h"
 #include "model/analysis/reading.h"
 
 namespace cuboct {
@@ -55,9 +57,10 @@ class StateReader {
   const Vec3& origin_;
   int threads_;
   NearPairs near_;
+  std::optional<ParticleStress> stress_;  // once it is asked for
 };
 
 // Whether a reading takes the sums of the pairs' kicks.
-inline bool takes_kicks(const Asked& asked) { return asked.forces || asked.velocities || asked.energies; }
+inline bool takes_kicks(const Asked& asked) { return takes_forces(asked); }
 
 }  // namespace cuboct

@@ -12,7 +12,7 @@
 namespace cuboct {
 
 StrainMeter::StrainMeter(const std::vector<Vec3>& initial, const Periodic& periodic, double radius)
-    : initial_(initial), periodic_(periodic), first_(initial.size() + 1, 0) {
+    : initial_(initial), periodic_(periodic), present_box_(periodic), first_(initial.size() + 1, 0) {
   CellList cells(radius, periodic);
   cells.build(initial);
   cells.for_each_pair(initial, [&](uint32_t i, uint32_t j, const Vec3&, double) {
@@ -37,7 +37,7 @@ Mat3 StrainMeter::gradient(size_t i, const std::vector<Vec3>& present) const {
   for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
     const uint32_t j = neighbours_[k];
     const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
-    const Vec3 after = nearest_image(present[j] - present[i], periodic_);
+    const Vec3 after = nearest_image(present[j] - present[i], present_box_);
     moved += (after - before) * before.transpose();
     shape += before * before.transpose();
   }
@@ -57,7 +57,7 @@ std::vector<LocalStrain> StrainMeter::measure(const std::vector<Vec3>& present) 
     for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
       const uint32_t j = neighbours_[k];
       const Vec3 before = nearest_image(initial_[j] - initial_[i], periodic_);
-      const Vec3 after = nearest_image(present[j] - present[i], periodic_);
+      const Vec3 after = nearest_image(present[j] - present[i], present_box_);
       strain.residual += (after - strain.gradient * before).squaredNorm();
     }
   }
@@ -77,10 +77,10 @@ uint32_t StrainMeter::broken(size_t i, const std::vector<Vec3>& present, const R
   for (size_t k = first_[i]; k < first_[i + 1]; ++k) {
     const uint32_t j = neighbours_[k];
     const double end = reach(static_cast<uint32_t>(i), j);
-    const auto beyond = [&](const std::vector<Vec3>& x) {
-      return nearest_image(x[j] - x[i], periodic_).squaredNorm() > end * end;
+    const auto beyond = [&](const std::vector<Vec3>& x, const Periodic& box) {
+      return nearest_image(x[j] - x[i], box).squaredNorm() > end * end;
     };
-    count += beyond(present) && !beyond(initial_);
+    count += beyond(present, present_box_) && !beyond(initial_, periodic_);
   }
   return count;
 }

@@ -44,6 +44,9 @@ class StrainMeter {
   // (InputError).
   StrainMeter(const std::vector<Vec3>& initial, const Periodic& periodic, double radius);
 
+  // The box of the present positions from now on: of the same axes. At first that of the initial ones.
+  void set_box(const Periodic& present) { present_box_ = present; }
+
   // `present` has the order of `initial`. Where the neighbours span less than space (a chain, a sheet, a lone
   // particle), the directions that they do not see count as unstrained.
   std::vector<LocalStrain> measure(const std::vector<Vec3>& present) const;
@@ -60,7 +63,7 @@ class StrainMeter {
   uint32_t broken(size_t i, const std::vector<Vec3>& present, const Reach& reach) const;
 
   std::vector<Vec3> initial_;
-  Periodic periodic_;
+  Periodic periodic_, present_box_;
   std::vector<size_t> first_;         // [particle]: begin of its neighbours; one more at the end
   std::vector<uint32_t> neighbours_;  // by particle
 };

@@ -65,6 +65,22 @@ std::string run_text(const Scene& scene, const Shown& shown) {
                      shown(scene.rule.dt, "s"), shown(duration_of(scene), "s"));
 }
 
+// "x to 1.05 of the packing's length, at 1e+09 1/s", for each axis that is or becomes another one.
+SynopsisLine box_line(const Scene& scene, const Shown& shown) {
+  const Vec3 begin = scene.deform->strain, end = scene.deform->strain_at(scene.steps);
+  const Vec3 extent = scene.box_at(scene.steps).extent;
+  std::string text;
+  for (int a = 0; a < 3; ++a) {
+    if (begin[a] == 0 && end[a] == 0) continue;
+    text += fmt::format("{}strain {:.4g} % along {}, {} long", text.empty() ? "" : "; ", 100 * end[a],
+                        "xyz"[a], shown(extent[a], "m"));
+    if (scene.deforms() && !scene.loading)
+      text += fmt::format(", at {}", shown(scene.deform->per_step[a] / scene.rule.dt, "1/s"));
+  }
+  if (!scene.deforms()) return {"box", "keeps the size that it was left with: " + text};
+  return {"box", "deforms, at the end " + text, "for the reference engine alone"};
+}
+
 std::string until_text(const Until& until) {
   return fmt::format("{} is {} {:.6g}", until.curve, until.side_name(), until.limit);
 }
@@ -90,6 +106,7 @@ std::vector<SynopsisLine> synopsis_of(const Scene& scene) {
     crossings = fmt::format(", {} crossings", times_text(duration_of(scene) * motion.sound_speed / length));
   }
   lines.push_back({"run", run_text(scene, shown) + crossings});
+  if (scene.deform) lines.push_back(box_line(scene, shown));
   if (scene.loading)
     lines.push_back(
         {"loading",

@@ -119,10 +119,11 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
     pull_ = std::max(pull_, strongest_pull(one));
     jump_ = std::max(jump_, std::abs(one.force(one.cutoff() * (1 - 1e-12))));
   }
-  keeps_energy_ = cuboct::keeps_energy(rule, scene.periodic);
+  // A box that deforms works on what is in it.
+  keeps_energy_ = !scene.deforms() && cuboct::keeps_energy(rule, scene.periodic);
   Rule undamped = rule;
   undamped.damping.coefficient = 0;
-  only_loses_ = cuboct::keeps_energy(undamped, scene.periodic);
+  only_loses_ = !scene.deforms() && cuboct::keeps_energy(undamped, scene.periodic);
 
   // The energy of a leapfrog run, with v of half a step later, swings by theta^2/4 of a mode's energy, theta
   // = omega dt; it starts at one end where all starts as kinetic. The mean over the modes of the packing is
@@ -147,7 +148,7 @@ Watch::Watch(const Scene& scene, double table_error, int threads)
       if (driven(type)) driven_.push_back(id);
     }
   const bool still =
-      !drives_ && !weighs && !led &&
+      !drives_ && !weighs && !led && !scene.deforms() &&
       std::all_of(scene.body.v.begin(), scene.body.v.end(), [](const Vec3& v) { return v.isZero(0); });
   if (still && in_balance(rule, scene.body, scene.periodic, pull_)) rest_ = scene.body.x;
 }
@@ -289,7 +290,7 @@ bool Watch::prove_unstable(const Moment& moment, const Motion& motion, Suspicion
       y[id] = after;
   }
   const Rule& rule = scene_.rule;
-  const Quotient q = stability_quotient(rule, scene_.periodic, x, type_, std::move(y));
+  const Quotient q = stability_quotient(rule, scene_.box_at(moment.step), x, type_, std::move(y));
   if (!(q.total() > 4)) return false;
   if (suspicion == Suspicion::near_limit) {
     // One per cent beyond, and a mode needs hundreds of steps to matter.
@@ -337,7 +338,7 @@ void Watch::see_core(const Moment& moment, const Motion& motion) {
     return;
   std::vector<Vec3> x(type_.size());
   for (uint32_t id = 0; id < type_.size(); ++id) x[id] = moment.x(id);
-  CellList cells(rule.cutoff(), scene_.periodic);
+  CellList cells(rule.cutoff(), scene_.box_at(moment.step));
   cells.build(x);
   double most = 1;
   uint32_t a = 0, b = 0;
@@ -475,7 +476,7 @@ void Watch::see(uint64_t step, const Body& body, const std::vector<Vec3>& force,
   if (!body.u.empty()) moment.u = [&](uint32_t id) { return body.u[id]; };
   moment.force = [&](uint32_t id) { return force[id]; };
   moment.energies = energies;
-  moment.closest = closest_of(rule, body.x, scene_.periodic);
+  moment.closest = closest_of(rule, body.x, scene_.box_at(step));
   see(moment);
 }
 

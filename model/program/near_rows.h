@@ -16,6 +16,8 @@ class NearRows {
   // m. InputError where a periodic extent is below two reaches.
   NearRows(double reach, const Periodic& periodic);
 
+  // The box has become this one, of the same axes. The rows stay as long as they last.
+  void set_box(const Periodic& periodic);
   // std::runtime_error where a position is not finite.
   void update(const std::vector<Vec3>& x);
   // Those within reach + skin when the list was made.
@@ -29,6 +31,7 @@ class NearRows {
   bool lasts(const std::vector<Vec3>& x) const;
 
   double reach_, skin_;
+  Periodic box_, made_box_;  // of now, and of when the list was made
   CellList cells_;
   std::vector<Vec3> made_at_;
   std::vector<uint64_t> first_;

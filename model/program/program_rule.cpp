@@ -89,6 +89,9 @@ class ProgramTerms final : public RoundsTerms {
   }
 
   void velocities(const std::vector<Vec3>& v) override { v_ = v; }
+  void set_box(const Periodic& periodic) override {
+    if (near_) near_->set_box(periodic);
+  }
   void time(uint64_t step) override { time_ = static_cast<int64_t>(program_.first_step + step); }
   void begin(const std::vector<Vec3>& x) override {
     for (size_t i = 0; i < x.size(); ++i)

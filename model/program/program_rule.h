@@ -18,6 +18,8 @@ class ProgramRule final : public RoundsRule {
 
   const RuleProgram* text() const override { return &program_; }
   const RuleDeclaration& declaration() const override { return program_.declaration; }
+  // Lasting bonds count from the body as packed, over a box of one size.
+  bool lets_box_deform() const override { return program_.declaration.bonds == BondRange::current; }
   double bond_reach() const override;
   double stable_time_step(double mass, double pitch) const override;
   double stiffness() const override { return program_.stiffness; }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "model/contract/bond.h"
+#include "model/contract/box_deformation.h"
 #include "model/rules/rounds_rule.h"
 
 namespace cuboct {
@@ -47,6 +48,7 @@ void Balance::recall(Memory memory) {
   stiffness_ = memory.stiffness;
   before_ = std::move(memory.before);
   anchor_ = std::move(memory.anchor);
+  box_load_ = memory.box_load;
   forces();
 }
 
@@ -82,7 +84,7 @@ Unbalance Balance::unbalance() const {
       if (!type.imposed[axis]) weight[axis] += rule_.mass_of(body_.type[i]) * type.gravity[axis];
     }
   }
-  out.load = weight.norm();
+  out.load = std::max(weight.norm(), box_load_);
   // Forces that pull a body apart are its load though they balance.
   for (const auto* forces : {&of_type, &pulled})
     for (const Vec3& force : *forces) out.load = std::max(out.load, force.norm());
@@ -96,11 +98,33 @@ double Balance::largest_force() const {
   return most;
 }
 
-void Balance::go_on(double time) {
+// What particles did in the last step, about the box's own motion.
+void Balance::remember_step() {
   if (before_.size() == body_.size()) {
     last_step_ = body_.x;
     for (size_t i = 0; i < body_.size(); ++i) last_step_[i] -= before_[i];
   }
+  remembered_ = true;
+}
+
+// The force through the face across an axis is the stress along it times the face: the sum of stress times
+// volume over the box's length.
+void Balance::stretch(const Periodic& box) {
+  remember_step();
+  const BoxStretch with(periodic_, box);
+  with.carry(body_.x);
+  for (size_t i = 0; i < anchor_.size(); ++i) anchor_[i] = body_.x[i] - body_.u[i];
+  periodic_ = box;
+  make_lists();
+  Mat3 sum = Mat3::Zero();
+  for (const Mat3& of : reference_->virial_stress(1)) sum += of;
+  for (int axis = 0; axis < 3; ++axis)
+    if (with.ratio[axis] != 1) box_load_ = std::max(box_load_, std::abs(sum(axis, axis)) / box.extent[axis]);
+}
+
+void Balance::go_on(double time) {
+  if (!remembered_) remember_step();
+  remembered_ = false;
   before_ = body_.x;
   std::vector<Vec3> moved = body_.x, ahead = body_.x;
   for (size_t i = 0; i < body_.size(); ++i) {

@@ -30,6 +30,12 @@ NearList::NearList(double cutoff, const Periodic& periodic, double margin, size_
       lanes_(lanes),
       threads_(threads) {}
 
+void NearList::set_box(const Periodic& periodic, double margin) {
+  periodic_ = periodic;
+  margin_ = margin;
+  nearest_ = CellList(cutoff_, periodic);
+}
+
 // Each skin costs its longer lists at each step, and a new list whenever the fastest particle has crossed
 // half of it.
 void NearList::plan(std::span<const Vec3> x, double speed) {

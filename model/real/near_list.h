@@ -23,6 +23,8 @@ class NearList {
   // Gives each particle a slot, by cells, and lists its neighbours by ascending id: a sum over them does not
   // depend on slots, nor on when lists were made. std::runtime_error where a position is not finite.
   void build(std::span<const Vec3> x);
+  // The box has become this one: of the same axes. The lists stay.
+  void set_box(const Periodic& periodic, double margin);
   // Lists from now on have the skin that costs least, were the fastest particle to go on at `speed` (m per
   // step).
   void plan(std::span<const Vec3> x, double speed);

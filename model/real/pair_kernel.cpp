@@ -495,11 +495,16 @@ PairForce<Real>::PairForce(const Rule& rule, const Periodic& periodic) {
       }
     contact2 = real(rule.contact_distance * rule.contact_distance);
   }
+  set_box(periodic);
+}
+
+template <class Real>
+void PairForce<Real>::set_box(const Periodic& periodic) {
   for (int axis = 0; axis < 3; ++axis) {
     if (periodic.extent[axis] <= 0) continue;
     ring = true;
-    extent[axis] = real(periodic.extent[axis]);
-    inverse_extent[axis] = real(1 / periodic.extent[axis]);
+    extent[axis] = static_cast<Real>(periodic.extent[axis]);
+    inverse_extent[axis] = static_cast<Real>(1 / periodic.extent[axis]);
   }
 }
 template struct PairForce<double>;

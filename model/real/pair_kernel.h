@@ -43,6 +43,7 @@ struct LawTerms {
 template <class Real>
 struct PairForce {
   PairForce(const Rule& rule, const Periodic& periodic);
+  void set_box(const Periodic& periodic);
 
   std::vector<LawTerms<Real>> laws;
   std::vector<Real> law_index;  // materials x materials; empty where there is one law

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "model/base/error.h"
 #include "model/base/parallel.h"
 #include "model/real/rounds_engine.h"
 
@@ -50,13 +51,16 @@ template <class Real>
 class Engine final : public RealEngine {
  public:
   Engine(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
-      : force_(rule, periodic),
+      : rule_cutoff_(rule.cutoff()),
+        force_(rule, periodic),
         threads_(static_cast<int>(std::clamp<size_t>(body.size() / kParticlesPerThread, 1,
                                                      static_cast<size_t>(std::max(1, options.threads))))),
-        list_(rule.cutoff(), periodic, margin(rule, periodic), pair_lanes<Real>(), threads_),
+        list_(rule.cutoff(), periodic, margin(periodic), pair_lanes<Real>(), threads_),
         options_(options),
         dt_(rule.dt),
-        particles_(body.size()) {
+        particles_(body.size()),
+        box_(periodic),
+        listed_box_(periodic) {
     for (const ParticleType& type : rule.types) {
       pushes_.emplace_back(type, rule.mass_of(static_cast<int>(pushes_.size())));
       materials_.push_back(static_cast<Real>(type.material));
@@ -84,8 +88,10 @@ class Engine final : public RealEngine {
   void step(uint64_t number) override {
     if (options_.integrator == Integrator::semi_implicit_euler) {
       evaluate(number);
+      carry(number + 1);
       move<true>(dt_, dt_, number);
     } else {
+      carry(number + 1);
       move<true>(dt_ / 2, dt_, number);
       evaluate(number);
       move<false>(dt_ / 2, 0, number);
@@ -125,9 +131,29 @@ class Engine final : public RealEngine {
 
  private:
   // Differences across a box and the box itself are rounded, each by half an epsilon of its size or less.
-  static double margin(const Rule& rule, const Periodic& periodic) {
+  double margin(const Periodic& periodic) const {
     return 8 * static_cast<double>(std::numeric_limits<Real>::epsilon()) *
-           (rule.cutoff() + periodic.extent.maxCoeff());
+           (rule_cutoff_ + periodic.extent.maxCoeff());
+  }
+  // The particles, and where the list was made, go with the box to that of a step.
+  void carry(uint64_t step) {
+    if (!options_.deform) return;
+    const Periodic next = options_.deform->at(step);
+    const BoxStretch stretch(box_, next);
+    for (std::vector<Real>* four : {&x_, &listed_})
+      for (size_t s = 0; s < particles_; ++s)
+        for (int axis = 0; axis < 3; ++axis) {
+          Real& x = (*four)[4 * s + static_cast<size_t>(axis)];
+          x = static_cast<Real>(stretch.origin[axis] + stretch.ratio[axis] * (x - stretch.origin[axis]));
+        }
+    box_ = next;
+    force_.set_box(next);
+    list_.set_box(next, margin(next));
+  }
+  // m, that a particle may go from where it was listed.
+  double allowed() const {
+    if (!options_.deform) return list_.skin() / 2;
+    return allowed_motion(rule_cutoff_, rule_cutoff_ + list_.skin(), listed_box_, box_);
   }
   static std::vector<Real> packed(const std::vector<Vec3>& by_id) {
     std::vector<Real> four(4 * by_id.size());
@@ -231,7 +257,7 @@ class Engine final : public RealEngine {
     const double farthest = std::sqrt(static_cast<double>(farthest2));
     const bool due = --plan_in_ == 0;
     if (due) plan_in_ = kPlanEvery;
-    if (lost || farthest > list_.skin() / 2 || due)
+    if (lost || farthest > allowed() || due)
       relist(number, due, farthest / static_cast<double>(steps_on_list_));
   }
 
@@ -260,15 +286,18 @@ class Engine final : public RealEngine {
     type_.swap(types);
     for (size_t s = 0; s < particles_; ++s) rank_[order[s]] = static_cast<uint32_t>(s);
     listed_ = x_;
+    listed_box_ = box_;
     f_.resize(x_.size());
   }
 
-  const PairForce<Real> force_;
+  const double rule_cutoff_;  // m
+  PairForce<Real> force_;
   const int threads_;
   NearList list_;
   const RealOptions options_;
   const double dt_;
   const size_t particles_;
+  Periodic box_, listed_box_;  // of now, and of when the list was made
   bool pd_ = false;
   std::vector<Push<Real>> pushes_;  // [type]
   std::vector<Real> materials_;     // [type]
@@ -286,6 +315,9 @@ class Engine final : public RealEngine {
 std::unique_ptr<RealEngine> make_real_engine(const Rule& rule, const Body& body, const Periodic& periodic,
                                              const RealOptions& options) {
   if (rule.rounds != nullptr) return make_rounds_engine(rule, body, periodic, options);
+  if (options.precision == Precision::float32 && options.deform)
+    throw InputError("floats do not hold the strain of one step: a box that deforms needs doubles",
+                     "leave --precision out");
   if (options.precision == Precision::float32)
     return std::make_unique<Engine<float>>(rule, body, periodic, options);
   return std::make_unique<Engine<double>>(rule, body, periodic, options);

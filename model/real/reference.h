@@ -5,8 +5,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "model/contract/box_deformation.h"
 #include "model/contract/rule.h"
 
 namespace cuboct {
@@ -36,6 +38,10 @@ struct RealOptions {
   // each step, as by a machine without order.
   uint64_t order_seed = 0;
   uint64_t first_step = 0;  // the step that the body is the state of
+  // Of a box that changes its lengths: each step first carries the particles with it, from the box of the
+  // step before to its own, and leaves their velocities. The periodic box that an engine is given is that of
+  // `first_step`. None: it keeps its lengths.
+  std::optional<BoxDeformation> deform = {};
   // Rounds are run when somebody asks for what they make: of a state that another engine moves.
   bool on_demand = false;
 };

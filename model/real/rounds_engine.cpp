@@ -16,6 +16,11 @@ Body as_packed(Body body) {
   return body;
 }
 
+// The box in which as_packed() stands.
+const Periodic& box_of_packed(const Body& body, const Periodic& now, const RealOptions& options) {
+  return body.bonds && options.deform ? options.deform->packed : now;
+}
+
 class RoundsEngine final : public RealEngine {
  public:
   RoundsEngine(const Rule& rule, const Body& body, const Periodic& periodic, const RealOptions& options)
@@ -27,8 +32,10 @@ class RoundsEngine final : public RealEngine {
         type_(body.type),
         rounds_(*rule.rounds),
         remembers_(has_memory(rule)),
-        terms_(rounds_.bind(rule, as_packed(body), periodic, options.threads)),
+        box_(periodic),
+        terms_(rounds_.bind(rule, as_packed(body), box_of_packed(body, periodic, options), options.threads)),
         steps_(options.first_step) {
+    if (options.deform) terms_->set_box(box_);
     recall_bonds(*terms_, body);
     for (const Vec3& v : v_) fastest_ = std::max(fastest_, v.cwiseAbs().maxCoeff());
     if (!options.on_demand) refresh();
@@ -40,6 +47,7 @@ class RoundsEngine final : public RealEngine {
       const double dt = rule_.dt;
       if (options_.integrator == Integrator::semi_implicit_euler) {
         if (!fresh_ || remembers_) evaluate(true);
+        carry(number + 1);
         move(dt, dt);
         ++steps_;
         fresh_ = false;
@@ -47,6 +55,7 @@ class RoundsEngine final : public RealEngine {
         // the rounds cannot be run.
         if (!remembers_) evaluate(false);
       } else {
+        carry(number + 1);
         move(dt / 2, dt);
         ++steps_;
         kick_.clear();
@@ -62,6 +71,7 @@ class RoundsEngine final : public RealEngine {
   void read(Body& body) const override { body.x = x_, body.v = v_, body.u = u_; }
   void place(const Body& body, uint64_t step) override {
     x_ = body.x, v_ = body.v, steps_ = step;
+    if (options_.deform) set_box(options_.deform->at(step));
     if (!u_.empty()) u_ = body.u;
     fresh_ = false;
     kick_.clear();
@@ -87,6 +97,17 @@ class RoundsEngine final : public RealEngine {
   }
 
  private:
+  void set_box(const Periodic& box) {
+    box_ = box;
+    terms_->set_box(box);
+  }
+  // The particles go with the box to that of a step.
+  void carry(uint64_t step) {
+    if (!options_.deform) return;
+    const Periodic next = options_.deform->at(step);
+    BoxStretch(box_, next).carry(x_);
+    set_box(next);
+  }
   void evaluate(bool keeps) const {
     terms_->velocities(v_);
     terms_->time(steps_);
@@ -129,6 +150,7 @@ class RoundsEngine final : public RealEngine {
   std::vector<uint8_t> type_;
   const RoundsRule& rounds_;  // of rule_
   const bool remembers_;
+  Periodic box_;  // of x_
   std::unique_ptr<RoundsTerms> terms_;
   uint64_t steps_;                  // that led to x_
   mutable bool fresh_ = false;      // the terms are those of x_
@@ -143,6 +165,8 @@ std::unique_ptr<RealEngine> make_rounds_engine(const Rule& rule, const Body& bod
   const std::string name = rule.rounds->declaration().name;
   if (options.precision == Precision::float32)
     throw InputError(fmt::format("the rule '{}' runs in doubles: --precision float is not for it", name));
+  if (options.deform && !rule.rounds->lets_box_deform())
+    throw InputError(fmt::format("the rule '{}' takes a box of one size", name));
   if (options.order_seed != 0) throw InputError(fmt::format("the rule '{}' sums in one order, by id", name));
   if (rule.damping.coefficient > 0)
     throw InputError(fmt::format("the rule '{}' has no damping by pairs", name), "leave [damping] out");

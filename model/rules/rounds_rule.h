@@ -27,6 +27,8 @@ class RoundsTerms {
  public:
   virtual ~RoundsTerms() = default;
 
+  // The box is this one from the next begin() on: of the same axes, and of a rule that lets_box_deform().
+  virtual void set_box(const Periodic&) {}
   // Before the first round, from the positions, m by id, in no image: what the declaration calls `ready`.
   // std::runtime_error where a position is not finite.
   virtual void begin(const std::vector<Vec3>& x) = 0;
@@ -76,6 +78,8 @@ class RoundsRule {
   virtual const RuleDeclaration& declaration() const = 0;
   // The chemical element whose atoms the particles are; empty: none.
   virtual std::string element() const { return {}; }
+  // Whether the box may change its lengths while the rule runs.
+  virtual bool lets_box_deform() const { return false; }
   // m, beyond which the bond of two nearest neighbours is broken; infinite where none breaks.
   virtual double bond_reach() const = 0;
   // s, the largest stable time step of an undamaged body; 0 where it is not known.

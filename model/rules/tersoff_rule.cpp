@@ -52,6 +52,10 @@ class TersoffRounds final : public RoundsTerms {
         forces_(tersoff),
         f_(body.x.size(), Vec3::Zero()) {}
 
+  void set_box(const Periodic& periodic) override {
+    for (int a = 0; a < 3; ++a)
+      if (periodic.extent[a] > 0) box_.edges(a, a) = periodic.extent[a];
+  }
   void begin(const std::vector<Vec3>& x) override {
     list_.update(box_, x);
     forces_.begin(list_, box_, x, {.threads = threads_});
@@ -100,6 +104,7 @@ class TersoffRule final : public RoundsRule {
     return rule;
   }
   std::string element() const override { return tersoff_.elements.front(); }
+  bool lets_box_deform() const override { return true; }
   double bond_reach() const override { return tersoff_.cutoff(); }
   double stable_time_step(double mass, double) const override {
     return stiffness_ > 0 ? 2 / std::sqrt(stiffness_ / mass) : 0;

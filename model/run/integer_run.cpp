@@ -126,7 +126,7 @@ auto IntegerRun::together(const Work& work) {
 Reading IntegerRun::read(const Asked& asked) {
   return together([&] {
     body();
-    if (asked.velocities || asked.energies) next_velocities_ = program_->next_velocities();
+    if (takes_velocities(asked)) next_velocities_ = program_->next_velocities();
     return leads() ? RoundsRun::read(asked) : Reading{};
   });
 }

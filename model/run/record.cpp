@@ -258,7 +258,7 @@ bool Loop::reached() {
 // `look`: the watch sees the state too, whatever goes into the curves.
 void Loop::measure(const Meter::Parts& parts, bool look) {
   const Meter::Parts read{.probes = parts.probes, .energies = parts.energies || look};
-  const Reading reading = engine_->read(meter_.asked(read, look));
+  const Reading reading = engine_->read(meter_.asked(read, look, engine_->step_count()));
   if (look) looked_ = engine_->step_count();
   if (leads()) meter_.add(reading, parts);
 }
@@ -562,6 +562,7 @@ void give(const RunRequest& request, RunState state, Trace& trace) {
 
 Recorded record(const Scene& scene, const EngineKind& kind, const RunRequest& request) {
   if (!kind.relaxes) refuse_static(scene, fmt::format("the {} engine", kind.name));
+  if (!kind.deforms) refuse_deform(scene, fmt::format("the {} engine", kind.name));
   return Loop(scene, kind, request).run();
 }
 

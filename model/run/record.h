@@ -67,6 +67,7 @@ struct EngineKind {
   bool in_pieces = false;                 // no batch is to take long, whoever looks on
   bool hashes_come = false;               // with a batch, after each of its steps
   bool saves = false;                     // leaves checkpoints
+  bool deforms = false;                   // follows the scene's box where that changes its lengths
   bool relaxes = false;                   // the scene's static loading: no other engine runs such a scene
   std::function<Vec3(uint32_t)> initial;  // m, from where a particle's displacement counts
   // Of the steps at which energies are read, those at which the watch looks; empty: at all.

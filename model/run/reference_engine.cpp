@@ -10,17 +10,29 @@
 
 namespace cuboct {
 
+void refuse_box(const Scene& scene, uint64_t step) {
+  if (!scene.deforms()) return;
+  if (const std::string fault = box_fault(scene, step + 1); !fault.empty())
+    throw StepError({Fault::none, step, 0, 0, 0, fault});
+}
+
+RealOptions from_step(RealOptions options, const Scene& scene, uint64_t step) {
+  options.first_step = step;
+  if (scene.deforms()) options.deform = scene.deform;
+  return options;
+}
+
 ReferenceEngine::ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options,
                                  double cell_edge, uint64_t step)
     : scene_(scene),
-      options_(options),
+      options_(from_step(options, scene, step)),
       cell_edge_(cell_edge),
-      begin_(step),
-      reference_(scene.rule, body, scene.periodic, options) {}
+      reference_(scene.rule, body, scene.box_at(step), options_) {}
 
 void ReferenceEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
   const uint64_t before = step_count();
   for (uint64_t done = 0; done < steps; ++done) {
+    refuse_box(scene_, before + done);
     try {
       reference_.step();
     } catch (const std::runtime_error& error) {

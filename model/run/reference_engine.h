@@ -8,6 +8,12 @@
 
 namespace cuboct {
 
+// StepError where the scene's box becomes too short for its rule in the step behind `step`.
+void refuse_box(const Scene& scene, uint64_t step);
+
+// The options with which an engine goes on from the scene's state after `step`: the box too.
+RealOptions from_step(RealOptions options, const Scene& scene, uint64_t step);
+
 class ReferenceEngine : public Engine {
  public:
   // Keeps a reference to `scene`; `body` may be another one than the scene's. `cell_edge`: m, in which speeds
@@ -15,7 +21,7 @@ class ReferenceEngine : public Engine {
   ReferenceEngine(const Scene& scene, const Body& body, const RealOptions& options, double cell_edge,
                   uint64_t step = 0);
 
-  uint64_t step_count() const override { return begin_ + reference_.step_count(); }
+  uint64_t step_count() const override { return reference_.step_count(); }
   // A step in which a position stops being finite takes the state with it.
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
   uint64_t hash() override;
@@ -33,7 +39,6 @@ class ReferenceEngine : public Engine {
   const Scene& scene_;
   RealOptions options_;
   double cell_edge_;
-  uint64_t begin_;
   Reference reference_;
 };
 

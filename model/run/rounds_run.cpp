@@ -18,11 +18,6 @@
 namespace cuboct {
 namespace {
 
-RealOptions from_step(RealOptions options, uint64_t step) {
-  options.first_step = step;
-  return options;
-}
-
 // Of all particles' values those of some, field by field.
 std::vector<std::vector<double>> rows_of(const std::vector<std::vector<double>>& all, size_t particles,
                                          std::span<const uint32_t> ids) {
@@ -51,7 +46,7 @@ RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& op
     : scene_(scene),
       step_(step),
       body_(completed(scene, body)),
-      options_(std::make_unique<RealOptions>(from_step(options, step))),
+      options_(std::make_unique<RealOptions>(from_step(options, scene, step))),
       cell_edge_(cell_edge) {
   if (options.on_demand)
     start_ = body_;
@@ -61,11 +56,12 @@ RoundsRun::RoundsRun(const Scene& scene, const Body& body, const RealOptions& op
 RoundsRun::~RoundsRun() = default;
 
 void RoundsRun::make_reference(const Body& start) {
-  engine_ = make_rounds_engine(scene_.rule, start, scene_.periodic, *options_);
+  engine_ = make_rounds_engine(scene_.rule, start, scene_.box_at(options_->first_step), *options_);
 }
 
 void RoundsRun::advance(uint64_t steps, std::vector<uint64_t>*) {
   for (; steps > 0; --steps) {
+    refuse_box(scene_, step_);
     try {
       engine_->step(step_);
     } catch (const std::runtime_error& error) {
@@ -124,10 +120,16 @@ Reading RoundsRun::read(const Asked& asked) {
   const Body& now = body();
   std::vector<Vec3> force, v;
   if (asked.forces || asked.watch) force = forces();
-  if (asked.velocities || asked.energies) v = velocities(force);
+  if (takes_velocities(asked)) v = velocities(force);
   Reading reading = read_body(scene_.rule, now, force, v, asked);
   reading.step = step_;
   if (asked.fields) reading.fields = rows_of(fields(), now.size(), asked.ids);
+  if (!asked.stress.empty()) {
+    const RoundsTerms& terms = *reference().terms();
+    std::vector<Mat3> virial(now.size());
+    for (size_t i = 0; i < now.size(); ++i) virial[i] = terms.stress(i, 1);
+    reading.stress_volume = summed_stress(scene_.rule, now.type, v, virial, asked.stress);
+  }
   if (!asked.energies) return reading;
   const RoundsTerms& terms = *reference().terms();
   reading.energies.potential = terms.energy();
@@ -190,6 +192,7 @@ std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
 EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {
   EngineKind kind;
   kind.name = "reference";
+  kind.deforms = true;
   kind.particles = start.size();
   kind.fixed = kind.keeps_state = false;
   kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);

@@ -82,6 +82,9 @@ void begin_at(Scene& scene, const std::string& directory) {
   LeftState left = guarded_left_state(path);
   check_alike(scene, left, directory);
 
+  if (!left.box_strain.isZero(0) && scene.rule.rounds && !scene.rule.rounds->lets_box_deform())
+    differ(scene, {"rule"}, directory, "they stand in a box that was deformed, and the rule's bonds do not");
+  begin_box(scene, left.box_strain);
   scene.packed = std::make_shared<Body>(scene.body);
   Body& body = scene.body;
   body.x = std::move(left.body.x);

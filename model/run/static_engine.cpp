@@ -38,7 +38,7 @@ StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, do
       threads_(threads),
       cell_edge_(cell_edge),
       step_(0),
-      balance_(scene.rule, body, scene.periodic, threads) {
+      balance_(scene.rule, body, scene.box_at(0), threads) {
   const auto any = [&](const Vec3 ParticleType::*of) {
     return std::ranges::any_of(scene.rule.types,
                                [&](const ParticleType& type) { return !(type.*of).isZero(); });
@@ -57,17 +57,18 @@ StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, do
       threads_(threads),
       cell_edge_(cell_edge),
       step_(step),
-      balance_(scene.rule, body, scene.periodic, threads) {
+      balance_(scene.rule, body, scene.box_at(step), threads) {
   const size_t n = body.size(), anchors = balance_.body().u.size();
   const size_t before = own.size() > kHeadWords ? own[6] : 0;
   if (own.size() < kHeadWords || (before != 0 && before != n) ||
-      own.size() != kHeadWords + 3 * (before + anchors))
+      own.size() != kHeadWords + 3 * (before + anchors) + (scene.deforms() ? 1 : 0))
     throw InputError("the checkpoint is not of static loading of this scene", "begin anew with --force");
   load_steps_ = own[0], evaluations_ = own[1];
   largest_share_ = std::bit_cast<double>(own[2]), largest_residual_ = std::bit_cast<double>(own[3]);
   rests_ = own[4] != 0;
   balance_.recall({std::bit_cast<double>(own[5]), vectors(own, kHeadWords, before),
-                   vectors(own, kHeadWords + 3 * before, anchors)});
+                   vectors(own, kHeadWords + 3 * before, anchors),
+                   scene.deforms() ? std::bit_cast<double>(own.back()) : 0});
 }
 
 EngineMemory StaticEngine::memory() {
@@ -81,6 +82,7 @@ EngineMemory StaticEngine::memory() {
                             memory.before.size()};
   add(own, memory.before);
   add(own, memory.anchor);
+  if (scene_.deforms()) own.push_back(std::bit_cast<uint64_t>(memory.box_load));
   return {{uint64_t{0}}, own};  // doubles
 }
 
@@ -118,6 +120,8 @@ void StaticEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
       step_ = end;
       return;
     }
+    refuse_box(scene_, next - 1);
+    if (scene_.deforms()) balance_.stretch(scene_.box_at(next));
     balance_.go_on(static_cast<double>(every) * scene_.rule.dt);
     step_ = next;
     relax();
@@ -175,6 +179,7 @@ EngineKind static_kind(const Scene& scene, const Body& start, int threads, doubl
   kind.fixed = kind.keeps_state = false;
   kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
   kind.relaxes = true;
+  kind.deforms = true;
   kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   kind.saves = true;
   kind.make = [&scene, &start, threads, cell_edge](CheckpointReader* from, bool) {
@@ -183,6 +188,12 @@ EngineKind static_kind(const Scene& scene, const Body& start, int threads, doubl
                                           threads, cell_edge, from->head().step, from->head().engine.own);
   };
   return kind;
+}
+
+void refuse_deform(const Scene& scene, const std::string& who) {
+  if (scene.deforms())
+    scene.places.fail({"run.deform", "box.deform"}, fmt::format("a box that deforms is not for {}", who),
+                      "--engine reference carries its particles along");
 }
 
 void refuse_static(const Scene& scene, const std::string& who) {

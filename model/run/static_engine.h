@@ -59,6 +59,9 @@ class StaticEngine : public Engine {
 // Of a scene with `loading`, from `start`.
 EngineKind static_kind(const Scene& scene, const Body& start, int threads, double cell_edge);
 
+// InputError where the scene's box deforms, of `who` that knows a box of one size: "the lattice engine".
+void refuse_deform(const Scene& scene, const std::string& who);
+
 // InputError where the scene asks for static loading, of `who` that knows motion alone: "the lattice engine".
 void refuse_static(const Scene& scene, const std::string& who);
 

@@ -160,15 +160,57 @@ void read_length(const ConfigTable& table, Scene& scene) {
   }
 }
 
+// s, as the keys say it, of time steps of `dt`.
+double length_of_run(const ConfigTable& run, const StagePart* stage, double dt) {
+  const ConfigTable& table = stage && (stage->has("steps") || stage->has("duration"))
+                                 ? static_cast<const ConfigTable&>(*stage)
+                                 : run;
+  if (table.has("duration")) return table.number("duration", quantity::time, Range::positive());
+  return static_cast<double>(table.at("steps").integer(0, INT64_MAX)) * dt;
+}
+
+// What the box's strain of the end asks of the time step: of the body as packed, stretched with the box. A
+// box that is pressed is stiffer. `time`: s, the longest that the run may take.
+void meet_strained_box(const Scene& scene, double time, TimeLimits& limits) {
+  const Vec3 strain = asked_strain(scene, time);
+  if (strain.isZero(0) || !(strain.minCoeff() > -1)) return;
+  Scene end = scene;
+  end.periodic = BoxDeformation{scene.periodic, strain}.at(0);
+  BoxStretch(scene.periodic, end.periodic).carry(end.body.x);
+  for (const double extent : end.periodic.extent)
+    if (extent > 0 && extent < 2 * scene.rule.cutoff()) return;  // refused once it is known when
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const RoundsRule* rounds = scene.rule.rounds.get();
+  double dt = 0;
+  if (rounds == nullptr)
+    dt = vibrations_limit(end, Vec3::Constant(-kNone), Vec3::Constant(kNone));
+  else if (rounds->text() != nullptr)
+    dt = step_limit(*rounds->text(), scene.rule, end.body, end.periodic).dt;
+  if (!(dt > 0) || std::isinf(dt)) return;
+  const std::string what = "the body in the box of the end";
+  if (rounds == nullptr) limits.given.meet(dt, what);
+  limits.automatic.meet(dt, what);
+}
+
 // A stage's keys replace those of [run]. `listed`: as read_body has it.
 void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, Scene& scene) {
   const auto found = root.table_at("run");
   if (!found) root.at("run");
   const ConfigTable& run = *found;
-  const TimeLimits limits = time_limits(scene, listed);
+  TimeLimits limits = time_limits(scene, listed);
   const auto usual = run.find("dt"), own = stage ? stage->find("dt") : std::nullopt;
   const auto dt = own ? own : usual;
   const bool automatic = !dt || (dt->is_string() && dt->string() == "auto");
+  if (scene.asked_deform) {
+    if (const RoundsRule* rounds = scene.rule.rounds.get();
+        automatic && limits.automatic.known() == 0 && rounds != nullptr && rounds->text() != nullptr) {
+      const StepLimit found = step_limit(*rounds->text(), scene.rule, scene.body, scene.periodic);
+      limits.automatic.meet(found.dt, found.of);
+    }
+    const double longest =
+        automatic ? limits.automatic.known() : dt->number(quantity::time, Range::positive());
+    meet_strained_box(scene, length_of_run(run, stage, longest), limits);
+  }
   TimeLimit limit = automatic ? limits.automatic : limits.given;
   std::string unknown;
   if (const RoundsRule* rounds = scene.rule.rounds.get();
@@ -341,10 +383,15 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   const size_t listed = read_body(root, stage, regions, packed, grown, scene);
   if (stage) stage->check_ramps();
   if (rounds) scene.rule.rounds = rule->make(root, regions, scene);
+  read_deform(root, stage, choice, scene);
   read_probes(root, regions, scene);
   scene.meshes = regions.mesh_facts();
   read_time(root, stage, listed, scene);
   if (scene.loading) check_static_rule(root, scene.rule);
+  if (scene.asked_deform) {
+    scene.asked_deform->steps = scene.steps * (stage ? stage->parts() - stage->part() : 1);
+    if (box_fault(scene, 0).empty()) begin_box(scene, Vec3::Zero());  // else every engine refuses the box
+  }
   read_reach(root, scene);
   for (Probe& probe : scene.probes)
     if (probe.kind == Probe::Kind::crack) probe.rule = std::make_shared<const Rule>(scene.rule);

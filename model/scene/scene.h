@@ -13,6 +13,7 @@
 
 #include "model/base/places.h"
 #include "model/body/mesh.h"
+#include "model/contract/box_deformation.h"
 #include "model/contract/rule.h"
 
 namespace cuboct {
@@ -49,6 +50,8 @@ struct Probe {
     kinetic_energy,  // of a set, J
     temperature,     // of the motion of a set about its mean velocity
     field,           // mean of a field of the rule over a set: its name, of a vector with _x, _y, _z
+    stress,          // of a set, or of all particles, Pa: xx, yy, zz, xy, xz, yz; of all also the box's
+                     // strain: strain_x, strain_y, strain_z
   };
   Kind kind = Kind::force;
   std::string name;
@@ -69,6 +72,10 @@ struct Probe {
   std::string field;
   size_t field_at = 0;
   int numbers = 1;
+  // stress: of all particles; with the part of their motion; the volume of the set, m^3, or 0: its share of
+  // the box's.
+  bool whole = false, kinetic = true;
+  double volume = 0, share = 1;
   std::optional<Datasheet> datasheet;  // stress_strain: what the material is said to show
   // crack:
   double bond_length = 0;            // m, particles that begin nearer to each other have a bond
@@ -114,6 +121,13 @@ struct Began {
   uint64_t step = 0;
 };
 
+// What [box] or a stage asks of the box: strains count from the box as packed.
+struct AskedDeformation {
+  Vec3 rate = Vec3::Zero();          // 1/s, engineering
+  std::optional<Vec3> final_strain;  // at the end, and of a stage's parts at the end of the last; else `rate`
+  uint64_t steps = 0;                // until then
+};
+
 struct Scene {
   std::string path;  // as given
   std::string text;  // of the file
@@ -124,7 +138,10 @@ struct Scene {
   Rule rule;
   Body body;                           // as the run begins
   std::shared_ptr<const Body> packed;  // as the scene packs it, where the run begins elsewhere
-  Periodic periodic;
+  Periodic periodic;                   // as the run begins
+  std::optional<AskedDeformation> asked_deform;
+  std::optional<BoxDeformation>
+      deform;        // where the box changes its lengths, or begins with others than packed
   double pitch = 0;  // m, nearest-neighbour distance of the packing; 0 where particles are listed singly
   Mat3 orientation = Mat3::Identity();  // columns: the packing's cubic axes in scene coordinates; of many
                                         // grains those of one that is not turned
@@ -157,7 +174,17 @@ struct Scene {
 
   // What regions, displacements and strains count from.
   const Body& packing() const { return packed ? *packed : body; }
+  const Periodic& packing_box() const { return deform ? deform->packed : periodic; }
+
+  bool deforms() const { return deform && deform->moves(); }
+  Periodic box_at(uint64_t step) const { return deform ? deform->at(step) : periodic; }
 };
+
+// The scene's box begins with this strain of the box as packed, and goes on from there as it is asked to.
+// InputError where it becomes too short for the rule before the run ends.
+void begin_box(Scene& scene, const Vec3& strain);
+// Why the rule cannot run in the box of a step; empty: it can.
+std::string box_fault(const Scene& scene, uint64_t step);
 
 // m: particles of the packing that begin nearer than this to each other are nearest neighbours, (1 + sqrt
 // 2)/2 pitches lies between the first and the second shell. Without a packing the cutoff.

@@ -509,6 +509,7 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
   if (file != nullptr) box.origin = file->low, box.extent = file->extent, periodic = file->periodic;
   const auto table = root.table_at("box");
   if (!table) return {box, periodic};
+  table->has("deform");  // read_deform reads it
   if (table->has("periodic")) periodic = table->axes("periodic");
   box.origin = table->vector_or("origin", quantity::length, box.origin);
   table->not_both("cells", "size");

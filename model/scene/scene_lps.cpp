@@ -11,8 +11,6 @@
 namespace cuboct {
 namespace {
 
-constexpr Quantity kVolume{{{0, 3, 0, 0}}, "a volume", "2 mm^3"};
-
 // Pa, the material's Lame constants; of a sheet those of its plane: by e_zz = 0, or by zero stress along z,
 // where lambda is 2 lambda mu/(lambda + 2 mu).
 void read_moduli(const ConfigTable& table, LpsMaterial& m) {

@@ -22,6 +22,8 @@
 
 namespace cuboct {
 
+inline constexpr Quantity kVolume{{{0, 3, 0, 0}}, "a volume", "2 mm^3"};
+
 class RoundsRule;        // model/rules/rounds_rule.h
 struct ParticleFileBox;  // model/body/particle_file.h
 
@@ -147,6 +149,11 @@ struct SitePeriods {
 // given.
 std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const SitePeriods* sites,
                                                   const ParticleFileBox* file = nullptr);
+
+// `deform` of [box], or of the stage in its place: axes that repeat alone. Before scene.steps are known.
+void read_deform(const ConfigTable& root, const StagePart* stage, const SceneChoice& choice, Scene& scene);
+// The box's strain, counted from the box as packed, after `time` (s): 0 where it keeps its lengths.
+Vec3 asked_strain(const Scene& scene, double time);
 
 // Everything that gives particles: positions and velocities ([packing], [crystal], [geometry], [particles],
 // [[particle]], [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and

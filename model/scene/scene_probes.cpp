@@ -7,6 +7,7 @@
 #include "model/config/name.h"
 #include "model/rules/rounds_rule.h"
 #include "model/scene/scene_parts.h"
+#include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {
 namespace {
@@ -83,12 +84,35 @@ void read_crack(const ConfigTable& table, const Scene& scene, Probe& probe) {
   for (const uint32_t id : probe.set.ids) probe.types.push_back(scene.body.type[id]);
 }
 
+// The volume of a set: as given, else its share of a box that repeats along all axes, else what its particles
+// have in the packing.
+void read_stress(const ConfigTable& table, const Scene& scene, Probe& probe) {
+  if (scene.whole != nullptr)
+    table.at("kind").fail("a stress probe counts whole particles: planes of [[symmetry]] part some",
+                          "a probe of kind \"stress_strain\" has the stress at a grip");
+  probe.kinetic = !table.boolean_or("virial", false);
+  const double count = static_cast<double>(probe.whole ? scene.body.size() : probe.set.ids.size());
+  probe.share = count / static_cast<double>(scene.body.size());
+  const bool filled = scene.periodic.extent.minCoeff() > 0;
+  const bool atoms = scene.rule.rounds && !scene.rule.rounds->element().empty();
+  if (table.has("volume"))
+    probe.volume = table.number("volume", kVolume, Range::positive());
+  else if (!filled && scene.pitch > 0 && !atoms)
+    probe.volume = count * fcc_volume(scene.pitch);
+  else if (!filled)
+    table.at("kind").fail(
+        "the volume of the particles is not known: the box does not repeat along x, y and z",
+        scene.boltzmann == 1 ? "volume = 1" : "volume = \"1 nm^3\"");
+}
+
 void read_accuracy(const ConfigTable& table, const Scene& scene, Probe& probe) {
   const auto accuracy = table.find("accuracy");
   if (!accuracy) return;
   probe.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
   if (probe.kind == Probe::Kind::crack)
     accuracy->fail("a crack goes on by a spacing at a time: no accuracy is asked of it");
+  if (probe.kind == Probe::Kind::stress)
+    accuracy->fail("stress is that of all particles, by the law in doubles: no accuracy is asked of it");
   if (scene.rule.rounds != nullptr)
     accuracy->fail("a [rule] chooses its formats by itself: accuracy is asked of probes of a [law]");
 }
@@ -99,8 +123,9 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
   const double tolerance = 1e-6 * (scene.pitch > 0 ? scene.pitch : scene.rule.cutoff());
   for (const ConfigTable& table : root.tables("probe")) {
     Probe probe;
-    const std::vector<std::string> kinds = {"force",    "displacement",   "stress_strain", "crack",
-                                            "velocity", "kinetic_energy", "temperature",   "field"};
+    const std::vector<std::string> kinds = {"force",       "displacement", "stress_strain",
+                                            "crack",       "velocity",     "kinetic_energy",
+                                            "temperature", "field",        "stress"};
     probe.kind = static_cast<Probe::Kind>(table.at("kind").choice("probe", kinds));
     probe.name = read_name(table.at("name"));
     for (const Probe& other : scene.probes)
@@ -112,6 +137,7 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
     const bool tension = probe.kind == Probe::Kind::stress_strain;
     const bool crack = probe.kind == Probe::Kind::crack;
     const bool scalar = probe.kind >= Probe::Kind::kinetic_energy;
+    const bool stress = probe.kind == Probe::Kind::stress;
     if (tension || crack || (!scalar && table.has("axis")))
       probe.axis = table.at("axis").direction().normalized();
     if (tension) {
@@ -124,7 +150,9 @@ void read_probes(const ConfigTable& root, const Regions& regions, Scene& scene) 
             mean_along(probe.upper, scene.body.x, probe.axis)))
         table.at("upper").fail("'upper' must lie further along 'axis' than 'lower'");
     } else {
-      probe.set = set("region", probe.name);
+      probe.whole = stress && !table.has("region");
+      probe.set = probe.whole ? ParticleSet{probe.name, {}} : set("region", probe.name);
+      if (stress) read_stress(table, scene, probe);
       probe.scale = scene.rule.mass / 2;
       if (probe.kind == Probe::Kind::temperature) read_temperature(table, scene, probe);
       if (probe.kind == Probe::Kind::field) read_field(table, scene, probe);

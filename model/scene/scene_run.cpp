@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/base/error.h"
+#include "model/base/tensor.h"
 #include "model/config/name.h"
 #include "model/scene/scene_parts.h"
 #include "model/scene/static_loading.h"
@@ -27,7 +28,7 @@ Quantity quantity_of(const Probe& probe) {
 }
 
 // Those that model/analysis/measure.h makes of the probe.
-std::vector<CurveOf> curves_of(const Probe& probe) {
+std::vector<CurveOf> curves_of(const Probe& probe, const Scene& scene) {
   std::vector<CurveOf> curves;
   const auto add = [&](const std::string& name, const Quantity& quantity) {
     curves.push_back({probe.name + "." + name, quantity});
@@ -64,6 +65,11 @@ std::vector<CurveOf> curves_of(const Probe& probe) {
       for (int k = 0; probe.numbers > 1 && k < probe.numbers; ++k)
         add(fmt::format("{}_{}", probe.field, "xyz"[k]), quantity_of(probe));
       break;
+    case Probe::Kind::stress:
+      for (const std::string& name : kTensorNames) add(name, quantity::pressure);
+      for (int a = 0; probe.whole && a < 3; ++a)
+        if (scene.periodic.extent[a] > 0) add(fmt::format("strain_{}", "xyz"[a]), quantity::number);
+      break;
   }
   return curves;
 }
@@ -73,7 +79,7 @@ CurveOf curve_at(const ConfigValue& value, const Scene& scene) {
   std::vector<std::string> names;
   std::vector<CurveOf> all;
   for (const Probe& probe : scene.probes) {
-    const std::vector<CurveOf> curves = curves_of(probe);
+    const std::vector<CurveOf> curves = curves_of(probe, scene);
     if (curves.size() == 1 && value.string() == probe.name) return curves[0];
     for (const CurveOf& curve : curves) names.push_back(curve.name), all.push_back(curve);
   }

@@ -26,7 +26,6 @@ bool is_symbol(const std::string& name) {
 }  // namespace
 
 const std::vector<std::string> kVectorNames{"x", "y", "z"};
-const std::vector<std::string> kTensorNames{"xx", "yy", "zz", "xy", "xz", "yz"};
 
 FrameType frame_type(const std::string& name, double mass, const std::string& element) {
   const size_t end = std::min(name.find('/'), name.size());
@@ -71,10 +70,11 @@ FrameBox box_of(const Frame& frame, const FrameStyle& style) {
     any = true;
   }
   FrameBox box{lower - Vec3::Constant(style.radius), upper - lower + Vec3::Constant(2 * style.radius)};
+  const Periodic& periodic = frame.box ? *frame.box : style.periodic;
   for (int axis = 0; axis < 3; ++axis)
-    if (style.periodic.extent[axis] > 0) {
-      box.lower[axis] = style.periodic.origin[axis];
-      box.extent[axis] = style.periodic.extent[axis];
+    if (periodic.extent[axis] > 0) {
+      box.lower[axis] = periodic.origin[axis];
+      box.extent[axis] = periodic.extent[axis];
     }
   return box;
 }

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "model/base/tensor.h"
 #include "model/contract/rule.h"
 
 namespace cuboct {
@@ -22,6 +24,7 @@ struct Frame {
   std::vector<double> strain{};                // axial elongation, 1 (strain.h)
   std::vector<std::array<float, 6>> tensor{};  // Green-Lagrange strain: xx, yy, zz, xy, xz, yz
   std::vector<uint32_t> broken{};              // initial neighbours that are out of reach
+  std::optional<Periodic> box{};               // where it is another one than the style's
   std::vector<std::vector<double>> own{};      // [FrameStyle::own][particle x its numbers]; empty: not known
 };
 
@@ -61,9 +64,8 @@ std::vector<FrameField> frame_fields(const FrameStyle& style);
 // The unit as files tell it: "reduced" for what has one in a scene of reduced units.
 std::string unit_text(const FrameStyle& style, const std::string& unit);
 
-// The numbers "x", "y", "z" of a vector and those of a symmetric tensor, in the order of Frame::tensor, which
-// is that of OVITO and LAMMPS.
-extern const std::vector<std::string> kVectorNames, kTensorNames;
+// The numbers "x", "y", "z" of a vector. Those of Frame::tensor are kTensorNames.
+extern const std::vector<std::string> kVectorNames;
 
 struct FrameBox {
   Vec3 lower, extent;  // m

@@ -135,7 +135,7 @@ void fields(HandOver<Bytes>& pass, Body& body) {
 }
 template <typename Bytes>
 void fields(HandOver<Bytes>& pass, LeftState& left) {
-  pass(left.engine, left.step, left.first_step, left.packing, left.types, left.body);
+  pass(left.engine, left.step, left.first_step, left.packing, left.box_strain, left.types, left.body);
 }
 
 template <typename Bytes>

@@ -150,6 +150,12 @@ LeftState read_left_state(const std::string& path) {
   else
     holds_none(in);
   check_types(in, left);
+  if (in.has_attribute(in.root(), "box_strain")) {
+    left.box_strain =
+        vector_in(in, "box_strain") + static_cast<double>(left.step) * vector_in(in, "box_strain_per_step");
+    if (!(left.box_strain.minCoeff() > -1) || !left.box_strain.allFinite())
+      throw InputError(in.missing("three numbers above -1", "box_strain"));
+  }
   return left;
 }
 

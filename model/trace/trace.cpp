@@ -141,6 +141,11 @@ class BodyRows {
         x_(out, group_, "x", chunk_of(particles_, 3), 3, "m", kRows),
         v_(out, group_, "v", chunk_of(particles_, 3), 3, "m/s", kRows) {
     if (head) out.array(group_, "type", {particles_}, head->scene.body.type, "", "[id] index into `types`");
+    if (head && head->scene.deform) {
+      scene_ = &head->scene;
+      box_.emplace(out, group_, "box_extent", 1, 3, "m",
+                   "[frame][axis] of the box that repeats; 0: an open axis");
+    }
     if (!first.force.empty()) force_.emplace(out, group_, "force", chunk_of(particles_, 3), 3, "N", kRows);
     if (!first.u.empty()) u_.emplace(out, group_, "u", chunk_of(particles_, 3), 3, "m", kRows);
     for (const std::vector<double>& field : first.shown)
@@ -167,6 +172,7 @@ class BodyRows {
       if (u_) u_->add(frame.u[k].data());
     }
     if (shown_) add_shown(frame.shown);
+    if (box_) box_->add(scene_->box_at(frame.step).extent.data());
     step_.add(frame.step);
     out_.flush();
   }
@@ -199,7 +205,8 @@ class BodyRows {
   Handle group_;
   PerFrame<uint64_t> step_;
   hdf5::Growing<double> x_, v_;
-  std::optional<hdf5::Growing<double>> force_, u_, shown_;
+  const Scene* scene_ = nullptr;  // where its box deforms
+  std::optional<hdf5::Growing<double>> force_, u_, shown_, box_;
   std::vector<uint32_t> numbers_;  // by field that the rule shows
 };
 

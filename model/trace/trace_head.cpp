@@ -59,7 +59,7 @@ const char* program_version() { return CUBOCT_VERSION; }
 
 uint64_t packing_hash(const Scene& scene) {
   const Body& body = scene.packing();
-  double farthest = scene.periodic.extent.maxCoeff();
+  double farthest = scene.packing_box().extent.maxCoeff();
   for (const Vec3& x : body.x) farthest = std::max(farthest, x.cwiseAbs().maxCoeff());
   // A last bit that came out otherwise is no other packing: 30 bits count, and round numbers, which are
   // frequent, do not stand where rounding turns.
@@ -68,7 +68,7 @@ uint64_t packing_hash(const Scene& scene) {
   const auto add = [&](const Vec3& v) {
     for (const double c : v) hash.add(std::llround(c / unit + 0.137));
   };
-  add(scene.periodic.extent);
+  add(scene.packing_box().extent);
   for (const Vec3& x : body.x) add(x);
   return hash.value();
 }
@@ -84,6 +84,10 @@ void write_head(const Writer& out, const TraceHead& head) {
   out.number<double>(root, "mass", scene.rule.mass);
   out.numbers<double>(root, "periodic_origin", triple(scene.periodic.origin));
   out.numbers<double>(root, "periodic_extent", triple(scene.periodic.extent));
+  if (scene.deform) {
+    out.numbers<double>(root, "box_strain", triple(scene.deform->strain));
+    out.numbers<double>(root, "box_strain_per_step", triple(scene.deform->per_step));
+  }
   std::vector<std::string> types;
   for (const ParticleType& type : scene.rule.types) types.push_back(type.name);
   out.names(root, "types", types);

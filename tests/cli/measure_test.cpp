@@ -261,7 +261,7 @@ TEST_F(MeasureCommand, OfABodyWithSurfaces) {
   EXPECT_EQ(
       measure({"stress"}).err,
       "stress is that of pairs, and the scene's rule has rounds: frames lack what its bonds and fields hold\n"
-      "  hint: probes of kind stress_strain read the stress while the run goes\n");
+      "  hint: probes of kind stress and stress_strain read it while the run goes\n");
   EXPECT_EQ(measure({"cna"}).code, 0);
 }
 

@@ -61,6 +61,10 @@ FIGURES = {
     ("dpd", "mean temperature"): (False, lambda r: mean(r, "temperature", 500, 2000), None),
     ("pull", "potential energy"): (True, lambda r: r[0]["energy.potential"] / 1013, lambda r: r[0]["PotEng"]),
     ("pull", "force on the moved"): (False, lambda r: r[-1]["grip.force"], lambda r: r[-1]["v_force"]),
+    ("stretch", "potential energy"): (True, lambda r: r[0]["energy.potential"] / 864, lambda r: r[0]["PotEng"]),
+    ("stretch", "length of the box"): (False, lambda r: 6 * 2**0.5 * 1.1 * (1 + r[-1]["box.strain_x"]), lambda r: r[-1]["Lx"]),
+    ("stretch", "mean stress along x"): (False, lambda r: mean(r, "box.xx", 1000, 1500), lambda r: -mean(r, "Pxx", 1000, 1500, "Step")),
+    ("stretch", "mean stress along y"): (False, lambda r: mean(r, "box.yy", 1000, 1500), lambda r: -mean(r, "Pyy", 1000, 1500, "Step")),
     ("plate", "mean force"): (False, lambda r: mean(r, "pull.force", 0.5e-6, 2.5e-6, "time"), None),
 }
 

@@ -131,6 +131,16 @@ std::set<std::string> scene_keys() {
          "constraint = [{ name = \"pulled\", velocity = \"[1, 0, 0] m/s\" }, { name = \"fixed\", "
          "free = true }]\n";
   read_scene(path.string(), {.begins = true, .stage = "pull-2"});
+  for (const char* deform : {"strain_rate = \"[1, 0, 0] 1/s\"", "final_strain = [0.1, 0, 0]"}) {
+    std::ofstream(path)
+        << "density = \"1 g/cm^3\"\npacking = { pitch = \"1 mm\" }\n"
+        << "box = { cells = [4, 4, 4], periodic = \"xyz\", deform = { " << deform << " } }\n"
+        << "law = { kind = \"brittle\", stiffness = \"1 MN/m\" }\n"
+           "[[probe]]\nname = \"box\"\nkind = \"stress\"\nvirial = true\nvolume = \"1 mm^3\"\n"
+           "[run]\nsteps = 1\n[[stage]]\nname = \"hold\"\ndeform = false\n[[stage]]\nname = \"go\"\n";
+    read_scene(path.string(), {.begins = true, .stage = "hold"});
+    read_scene(path.string(), {.begins = true, .stage = "go"});
+  }
   std::ofstream(path)
       << "density = \"1 g/cm^3\"\nbox = { cells = [8, 8, 8] }\n"
          "packing = { pitch = \"1 mm\", grains = { size = \"4 mm\", seed = 1, texture = \"z\", closest = 0.7 "

@@ -47,13 +47,17 @@ TEST(ForeignWords, AreToldWhereTheyWent) {
          "temperature: "
          "docs/user/limits.md#motion");
   expect("run", "timestep = \"1 us\"", "a.toml:12:1: unknown key 'timestep'\n  hint: the time step is 'dt'");
-  expect("box", "deform = [1, 0, 0]",
-         "a.toml:7:1: unknown key 'deform'\n"
-         "  hint: no box changes its size; moved regions pull a body, 'cuboct elastic' strains a cell: "
+  expect("box", "erate = [1, 0, 0]",
+         "a.toml:7:1: unknown key 'erate'\n"
+         "  hint: deform = { strain_rate = ... } or deform = { final_strain = ... } changes the lengths");
+  expect("box", "tilt = 1",
+         "a.toml:7:1: unknown key 'tilt'\n"
+         "  hint: lengths change at a constant engineering strain rate, and positions go with them: "
          "docs/user/limits.md#the-box");
   expect("", "barostat = true",
          "a.toml:1:1: unknown key 'barostat'\n"
-         "  hint: no box changes its size; a traction on faces presses a body: docs/user/limits.md#the-box");
+         "  hint: no box follows a pressure; a traction on faces presses a body, 'deform' strains a box: "
+         "docs/user/limits.md#the-box");
   // The key of a table counts as that of its first line.
   expect("run", "[thermostat]\nkind = \"bath\"",
          "a.toml:12:2: unknown key 'thermostat'\n"

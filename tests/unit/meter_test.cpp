@@ -39,7 +39,7 @@ TEST(Meter, EnergiesOfAParticleHeldByForce) {
     const Reference reference(scene.rule, scene.body, scene.periodic, integrator);
     Meter meter(scene, [&](uint32_t id) { return scene.body.x[id]; }, {.energies = true});
     const double late = integrator == Integrator::semi_implicit_euler ? scene.rule.dt / 2 : 0;
-    meter.add(read_reference(scene.rule, reference, late, meter.asked({}, true)), {});
+    meter.add(read_reference(scene.rule, reference, late, meter.asked({}, true, reference.step_count())), {});
     const std::vector<Curve> curves = meter.curves();
     ASSERT_EQ(curves.size(), 4u);
     // Velocities of semi-implicit Euler live half a step earlier.
