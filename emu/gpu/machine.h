@@ -149,6 +149,7 @@ class Machine {
     Array<uint32_t> notes;  // two counts of leavers, lost ones, longest list
     Array<Traveller<Policy>> leaving[2], arriving;
     Array<Control> control;
+    Meeting meeting{device};
     Array<uint64_t> hashes;
     Array<uint32_t> slot, found_here;
     Array<Found<Policy>> found;
@@ -221,7 +222,10 @@ class Machine {
   void settle(const HostParticles<Policy>& state);
   void list_here();
   void place(const Kept<Policy>& kept);
+  template <class Step>
+  Step filled(Slab& slab);
   void step(uint32_t number, bool hash, bool makes_near);
+  bool run_together(uint32_t steps, bool hash);
   bool next_makes_near();
   void plan_near_lists(const Outcome& outcome);
   void start_batch(uint32_t steps, bool hash);

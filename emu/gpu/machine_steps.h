@@ -3,6 +3,7 @@
 #pragma once
 
 #include "emu/gpu/machine.h"
+#include "emu/gpu/steps_together.h"
 
 namespace cuboct::gpu {
 
@@ -16,45 +17,52 @@ struct RaiseBase {
   CUBOCT_DEVICE void operator()(uint32_t) const { control->base += steps; }
 };
 
+// A step of a slab from the copy that holds the state to the other one.
+template <class Policy>
+template <class Step>
+Step Machine<Policy>::filled(Slab& s) {
+  // Where the allowed displacement is below an anchor's resolution, the list is made anew every step.
+  const auto square = [](double length) { return length > 0 ? static_cast<float>(length * length) : -1.0f; };
+  Step f{};
+  f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
+  f.near = {s.near_entries.data(), s.near_counts.data()};
+  f.near2 = square(reach_of(near_skin())), f.inside2 = square(reach_of(0));
+  f.range = static_cast<float>(range()), f.near_allowed = static_cast<float>(near_allowed());
+  if (const Slab* lower = beside(s, 0))
+    f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0, s.low_end,
+                   int64_t{lower->lower_copy_end}};
+  if (const Slab* upper = beside(s, 1))
+    f.copies[1] = {upper->x[1 - at_].data(), setup_.damped ? upper->v[1 - at_].data() : nullptr, s.high_begin,
+                   s.own, int64_t{upper->own} - int64_t{s.high_begin}};
+  if constexpr (Policy::kFixed) {
+    const SlabCells& cells = cells_of(s);
+    f.occupancy = {s.occupancy.data(),   nullptr,         nullptr,         cells.own_end,
+                   cells.lower_copy_end, setup_.capacity, s.entered.data()};
+    if (const Slab* lower = beside(s, 0))
+      f.occupancy.lower = lower->occupancy.data() + cells_of(*lower).inner_end;
+    if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
+  }
+  f.cell = s.cell.data(), f.farthest2 = square(farthest()), f.control = s.control.data();
+  for (const auto& other : slabs_)
+    if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();
+  return f;
+}
+
 // The step from the copy that holds the state to the other one.
 template <class Policy>
 void Machine<Policy>::step(uint32_t number, bool hash, bool makes_near) {
-  // Where the allowed displacement is below an anchor's resolution, the list is made anew every step.
-  const auto square = [](double length) { return length > 0 ? static_cast<float>(length * length) : -1.0f; };
   const auto launch = [&](Slab& s, Stream& stream, uint32_t begin, uint32_t end, uint32_t jump_at,
                           uint32_t jump_by) {
     if (begin == end) return;
-    const auto fill_and_run = [&](auto f) {
-      f.view = s.rule->view(), f.grid = grid(s), f.from = at(s, at_), f.to = at(s, 1 - at_), f.list = list(s);
-      f.near = {s.near_entries.data(), s.near_counts.data()};
-      f.near2 = square(reach_of(near_skin())), f.inside2 = square(reach_of(0));
-      f.range = static_cast<float>(range()), f.near_allowed = static_cast<float>(near_allowed());
-      if (const Slab* lower = beside(s, 0))
-        f.copies[0] = {lower->x[1 - at_].data(), setup_.damped ? lower->v[1 - at_].data() : nullptr, 0,
-                       s.low_end, int64_t{lower->lower_copy_end}};
-      if (const Slab* upper = beside(s, 1))
-        f.copies[1] = {upper->x[1 - at_].data(), setup_.damped ? upper->v[1 - at_].data() : nullptr,
-                       s.high_begin, s.own, int64_t{upper->own} - int64_t{s.high_begin}};
-      if constexpr (Policy::kFixed) {
-        const SlabCells& cells = cells_of(s);
-        f.occupancy = {s.occupancy.data(),   nullptr,         nullptr,         cells.own_end,
-                       cells.lower_copy_end, setup_.capacity, s.entered.data()};
-        if (const Slab* lower = beside(s, 0))
-          f.occupancy.lower = lower->occupancy.data() + cells_of(*lower).inner_end;
-        if (const Slab* upper = beside(s, 1)) f.occupancy.upper = upper->occupancy.data();
-      }
-      f.cell = s.cell.data(), f.farthest2 = square(farthest()), f.number = number,
-      f.control = s.control.data();
-      f.jump_at = jump_at, f.jump_by = jump_by;
-      for (const auto& other : slabs_)
-        if (other.get() != &s) f.others.at[f.others.count++] = other->control.data();
+    const auto run = [&](auto f) {
+      f.number = number, f.jump_at = jump_at, f.jump_by = jump_by;
       for_each_cached(stream, begin, end, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     };
     Policy::with_variant(s.rule->view(), [&](auto variant) {
       if (makes_near)
-        fill_and_run(Step<Policy, decltype(variant), true>());
+        run(filled<Step<Policy, decltype(variant), true>>(s));
       else
-        fill_and_run(Step<Policy, decltype(variant), false>());
+        run(filled<Step<Policy, decltype(variant), false>>(s));
     });
   };
   const size_t now = number % 2, last = 1 - now;
@@ -115,12 +123,28 @@ void Machine<Policy>::plan_near_lists(const Outcome& outcome) {
       for (Graph& graph : slab->graph) graph.drop();
 }
 
+// All steps of a batch in one launch. False: they are more than the device holds at once.
+template <class Policy>
+bool Machine<Policy>::run_together(uint32_t steps, bool hash) {
+  Slab& s = *slabs_.front();
+  bool ran = false;
+  Policy::with_variant(s.rule->view(), [&](auto variant) {
+    const StepsTogether<Policy, decltype(variant)> f{filled<Step<Policy, decltype(variant), false>>(s),
+                                                     s.id.data(), hash};
+    ran = go_on_together(s.stream, s.own, options_.block, s.rule->cache(), s.rule->cache_words(), steps,
+                         s.meeting, s.hashes.data(), f);
+  });
+  if (ran) near_age_ = kNever;  // steps over near lists go on with new ones
+  return ran;
+}
+
 template <class Policy>
 void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
   for (auto& slab : slabs_) {
     for_each(slab->stream, 0, 1, 32, ResetControl{slab->control.data()});
     if (hash) slab->hashes.zero(slab->stream);
   }
+  if (alone() && particles_ <= options_.together && run_together(steps, hash)) return wait_for_all();
   // Another slab's first step may write into this one's memory.
   if (!alone()) wait_for_all();
   // A graph pays where it is launched several times: once a list has lived for a while.

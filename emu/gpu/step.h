@@ -93,6 +93,7 @@ struct Pairs {
         entry[k] = coming[k];
         const uint32_t place = entry[k] & kPlaceMask<Policy::kReach>;  // of none: 0, which there is
         x_of[k] = load(from.x + place);
+        v_of[k] = v;  // read where damped alone
         if constexpr (Variant::kDamped) v_of[k] = load(from.v + place);
       }
       fetch(first + kTogether);
@@ -160,7 +161,7 @@ struct Step {
   CUBOCT_DEVICE bool idle() const { return control->limit < control->base + number; }
 
   CUBOCT_DEVICE void operator()(uint32_t index, const void* cache) const {
-    const uint32_t i = index < jump_at ? index : index + jump_by;
+    const uint32_t i = index < jump_at ? index : index + jump_by, now = control->base + number;
     auto x = load(from.x + i);
     auto v = load(from.v + i);
     const auto before = x;
@@ -170,15 +171,21 @@ struct Step {
     } else {
       const float displacement = near_displacement(x, v);
       if (2 * displacement > near_allowed && may_meet_unlisted(i, displacement)) {
-        atomic_min(&control->near_old, control->base + number - 1);
-        stop_after(control->base + number - 1);
+        atomic_min(&control->near_old, now - 1);
+        stop_after(now - 1);
         return;
       }
       go_over(i, pairs);
     }
-    bool sound = pairs.sound;
-    const auto& rule = pairs.rule;
-    const auto& sum = pairs.sum;
+    complete(i, now, pairs.rule, pairs.sum, pairs.sound, before, x, v, from, to);
+  }
+
+  // Kicks and moves the particle, and looks whether the step may be.
+  template <class Cached>
+  CUBOCT_DEVICE void complete(uint32_t i, uint32_t now, const Cached& rule, const typename Policy::Sum& sum,
+                              bool sound, const typename Policy::Position& before, typename Policy::Position x,
+                              typename Policy::Velocity v, const ParticlesView<Policy>& from,
+                              const ParticlesView<Policy>& to) const {
     auto residue = from.residue.load(i);
     if (from.u) {
       auto u = from.u[i];
@@ -198,7 +205,6 @@ struct Step {
     bool crowded = false;
     if constexpr (Policy::kFixed) sound &= cross(i, before, x, crowded);
     if (!sound || crowded) {
-      const uint32_t now = control->base + number;
       atomic_min(crowded ? &control->crowded : &control->doubt, now);
       stop_after(now - 1);
       return;
@@ -206,7 +212,6 @@ struct Step {
     float moved[3];
     moved_since<Policy>(view, grid, x, v, moved);
     if (moved[0] * moved[0] + moved[1] * moved[1] + moved[2] * moved[2] <= farthest2) return;
-    const uint32_t now = control->base + number;
     atomic_min(&control->old, now);
     stop_after(now);
   }
@@ -296,6 +301,27 @@ struct Step {
   }
 };
 
+template <class Policy>
+CUBOCT_DEVICE inline uint64_t hash_of_particle(const typename Policy::View& view, const GridView& grid,
+                                               const ParticlesView<Policy>& at, const CellAt& home,
+                                               uint32_t id, uint32_t i) {
+  auto x = at.x[i];
+  const auto residue = at.residue.load(i);
+  const auto v = at.v[i];
+  Hash hash;
+  hash.add(id).add(type_in(x.last));
+  for (int a = 0; a < 3; ++a) {
+    const int off = Policy::cells_off(view, grid, x, a);
+    Policy::take_off(view, grid, x, a, off);
+    int c = home.c[a] + off;
+    if (grid.wraps[a]) c = grid.low[a] + modulo(c - grid.low[a], grid.total[a]);
+    hash.add(c);
+  }
+  for (int a = 0; a < 3; ++a)
+    hash.add(Policy::whole(view, x, residue, a)).add(v.at[a]).add(at.u ? at.u[i].at[a] : 0);
+  return hash.value();
+}
+
 // hash_of (model/contract/state.h) of the state after step `number` of a batch, where it came so far; 0: of
 // the state as it is.
 template <class Policy>
@@ -309,22 +335,7 @@ struct HashEach {
   const Control* control;
   CUBOCT_DEVICE bool idle() const { return control->limit < number; }
   CUBOCT_DEVICE uint64_t operator()(uint32_t i) const {
-    auto x = at.x[i];
-    const auto residue = at.residue.load(i);
-    const auto v = at.v[i];
-    const CellAt home = cell[i];
-    Hash hash;
-    hash.add(id[i]).add(type_in(x.last));
-    for (int a = 0; a < 3; ++a) {
-      const int off = Policy::cells_off(view, grid, x, a);
-      Policy::take_off(view, grid, x, a, off);
-      int c = home.c[a] + off;
-      if (grid.wraps[a]) c = grid.low[a] + modulo(c - grid.low[a], grid.total[a]);
-      hash.add(c);
-    }
-    for (int a = 0; a < 3; ++a)
-      hash.add(Policy::whole(view, x, residue, a)).add(v.at[a]).add(at.u ? at.u[i].at[a] : 0);
-    return hash.value();
+    return hash_of_particle<Policy>(view, grid, at, cell[i], id[i], i);
   }
 };
 

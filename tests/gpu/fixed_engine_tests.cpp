@@ -16,6 +16,7 @@ gpu::Options slabs(int count, int block = 128) {
   gpu::Options options;
   options.devices.assign(static_cast<size_t>(count), 0);
   options.block = block;
+  if (block == 256) options.together = 0;  // few particles in a launch for each step, too
   return options;
 }
 

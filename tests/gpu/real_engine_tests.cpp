@@ -212,7 +212,8 @@ TEST(GpuDouble, FollowsTheReference) {
   compare(flight(), 2);
 }
 
-// The same bits in calls of one step or of many, on any number of slabs, with blocks of any size.
+// The same bits in calls of one step or of many, in a launch for each step or for many, on any number of slabs,
+// with blocks of any size.
 void expect_one_run(const Trial& run, Arithmetic arithmetic, int most) {
   SCOPED_TRACE(fmt::format("{}, {}", run.name, to_string(arithmetic)));
   const auto first = engine_of(run, arithmetic, slabs(1));
@@ -222,7 +223,9 @@ void expect_one_run(const Trial& run, Arithmetic arithmetic, int most) {
   const Body expected = first->body();
   ASSERT_TRUE(std::isfinite(expected.x[0].x()));
   for (int count = 1; count <= most; ++count) {
-    const auto engine = engine_of(run, arithmetic, slabs(count, count % 2 == 0 ? 32 : 256));
+    Options options = slabs(count, count % 2 == 0 ? 32 : 256);
+    options.together = 0;  // the first went on in one launch
+    const auto engine = engine_of(run, arithmetic, options);
     test::Dice dice(static_cast<uint64_t>(count));
     while (engine->step_count() < run.steps) {
       const uint64_t left = run.steps - engine->step_count();
@@ -263,7 +266,9 @@ TEST(GpuReal, NearListsServeAsLongOnSlabs) {
   for (int k = 0; k < 8; ++k) {
     Trial run = melt({4, 4, 14}, 0);
     for (Vec3& v : run.scene.body.v) v *= 0.3 + 0.15 * k;
-    const auto alone = engine_of(run, Arithmetic::float32, slabs(1));
+    Options one = slabs(1);
+    one.together = 0;
+    const auto alone = engine_of(run, Arithmetic::float32, one);
     const auto many = engine_of(run, Arithmetic::float32, slabs(4));
     for (uint64_t step = 1; step <= 120; ++step) {
       alone->advance(1), many->advance(1);

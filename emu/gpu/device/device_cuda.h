@@ -218,6 +218,107 @@ __global__ void __launch_bounds__(kLargestBlock)
   if (threadIdx.x % 32 == 0) atomicMax(out, most);
 }
 
+// Where the blocks of a launch wait for each other. Words of a line of memory each.
+struct MeetingWords {
+  uint32_t arrived, beside[31];  // blocks, counted on from the launch
+  uint32_t opened, behind[31];   // the last step that all have ended, twice; and 1 where another follows
+};
+class Meeting {
+ public:
+  explicit Meeting(int device) : device_(device) {}
+  Meeting(const Meeting&) = delete;
+  Meeting& operator=(const Meeting&) = delete;
+  ~Meeting() { release(device_, words_); }
+  // For a launch on this stream.
+  MeetingWords* begin(Stream& stream) {
+    if (!words_) words_ = static_cast<MeetingWords*>(allocate(device_, sizeof(MeetingWords)));
+    clear(stream, words_, sizeof(MeetingWords));
+    return words_;
+  }
+
+ private:
+  int device_;
+  MeetingWords* words_ = nullptr;
+};
+
+// A block's wait for the others at the end of step `number`; whether another follows, which the last to come
+// asks, so that all are told the same. What any of them wrote is then seen by all.
+template <class F>
+__device__ inline bool meet(MeetingWords* words, uint32_t number, uint32_t steps, const F& f) {
+  __shared__ uint32_t on;
+  __syncthreads();
+  if (threadIdx.x == 0) {
+    __threadfence();
+    if (atomicAdd(&words->arrived, 1u) + 1 == number * gridDim.x) {
+      __threadfence();
+      on = number < steps && f.goes_on(number + 1);
+      atomicExch(&words->opened, 2 * number + on);
+    } else {
+      uint32_t seen;
+      do asm volatile("ld.acquire.gpu.u32 %0, [%1];" : "=r"(seen) : "l"(&words->opened) : "memory");
+      while (seen < 2 * number);
+      on = seen & 1;
+    }
+    __threadfence();
+  }
+  __syncthreads();
+  return on;
+}
+
+// The threads that share an index: neighbours in a warp.
+struct PairLanes {
+  static constexpr int kCount = 8;
+  int lane;
+  // All lanes of the warp call it, and the others.
+  __device__ uint32_t most_of_warp(uint32_t value) const { return __reduce_max_sync(0xffffffffu, value); }
+  // The value that one of them has.
+  template <class T>
+  __device__ T from(const T& value, int one) const {
+    static_assert(sizeof(T) % 4 == 0);
+    T taken;
+    const auto* in = reinterpret_cast<const uint32_t*>(&value);
+    auto* out = reinterpret_cast<uint32_t*>(&taken);
+#pragma unroll
+    for (size_t k = 0; k < sizeof(T) / 4; ++k) out[k] = __shfl_sync(0xffffffffu, in[k], one, kCount);
+    return taken;
+  }
+  __device__ int64_t sum(int64_t value) const {
+#pragma unroll
+    for (int k = kCount / 2; k > 0; k /= 2)
+      value += __shfl_xor_sync(0xffffffffu, static_cast<long long>(value), k, kCount);
+    return value;
+  }
+  __device__ bool all(bool value) const {
+    const unsigned mine = ((1u << kCount) - 1) << (threadIdx.x % 32 / kCount * kCount);
+    return (__ballot_sync(0xffffffffu, value) & mine) == mine;
+  }
+};
+
+template <class F>
+__global__ void __launch_bounds__(kLargestBlock)
+    together_kernel(uint32_t end, const uint32_t* cache, uint32_t words, uint32_t steps, MeetingWords* meeting,
+                    uint64_t* sums, const __grid_constant__ F f) {
+  extern __shared__ uint4 memory[];
+  auto* here = reinterpret_cast<uint32_t*>(memory);
+  for (uint32_t k = threadIdx.x; k < words; k += blockDim.x) here[k] = cache[k];
+  __syncthreads();
+  constexpr uint32_t kPerWarp = 32 / PairLanes::kCount;
+  const uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x;
+  const PairLanes lanes{static_cast<int>(thread % PairLanes::kCount)};
+  for (uint32_t number = 1;; ++number) {
+    unsigned long long sum = 0;
+    // The last indices fill a warp, so that all of its lanes come.
+    for (uint32_t i = thread / PairLanes::kCount; i < (end + kPerWarp - 1) / kPerWarp * kPerWarp;
+         i += gridDim.x * blockDim.x / PairLanes::kCount)
+      sum += f(i, i < end, here, number, lanes);
+    if (__any_sync(0xffffffffu, sum != 0)) {
+      for (int k = 16; k > 0; k /= 2) sum += __shfl_down_sync(0xffffffffu, sum, k);
+      if (threadIdx.x % 32 == 0) atomicAdd(reinterpret_cast<unsigned long long*>(sums + number), sum);
+    }
+    if (!meet(meeting, number, steps, f)) return;
+  }
+}
+
 // The threads of a block that work on one thing: each takes its share of the indices 0 .. count - 1, and goes
 // on when all are done.
 struct Block {
@@ -263,6 +364,28 @@ void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int block, co
   cached_kernel<<<resident_blocks(stream, end - begin, block), block, words * 4, stream.get()>>>(
       begin, end, static_cast<const uint32_t*>(cache), static_cast<uint32_t>(words), f);
   check(cudaGetLastError(), "start a kernel");
+}
+// Steps 1 to `steps` of all indices below `end`, in one launch, while f.goes_on(step). What f gives is added
+// up in sums[step]. False, and nothing is done: the device does not do so.
+template <class F>
+bool go_on_together(Stream& stream, uint32_t end, int block, const void* cache, size_t words, uint32_t steps,
+                    Meeting& meeting, uint64_t* sums, const F& f) {
+  stream.activate();
+  const auto kernel = together_kernel<F>;
+  ask_for_memory(kernel, words * 4, "hold a rule's tables in a block's shared memory");
+  int each = 0;
+  check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, kernel, block, words * 4), "count blocks");
+  const unsigned blocks = std::min(blocks_for(end * PairLanes::kCount, block),
+                                   static_cast<unsigned>(each * stream.multiprocessors()));
+  if (blocks == 0) return false;
+  MeetingWords* met = meeting.begin(stream);
+  const auto* from = static_cast<const uint32_t*>(cache);
+  auto count = static_cast<uint32_t>(words);
+  void* arguments[] = {&end, &from, &count, &steps, &met, &sums, const_cast<F*>(&f)};
+  check(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks), dim3(static_cast<unsigned>(block)), arguments, words * 4,
+                                    stream.get()),
+        "start a kernel");
+  return true;
 }
 // Calls f(index, block, memory), a block of threads and `bytes` of its memory each.
 template <class F>

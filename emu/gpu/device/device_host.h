@@ -95,6 +95,33 @@ void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int, const vo
     for (uint32_t i = begin; i < end; ++i) f(i, cache);
   });
 }
+// Where the blocks of a launch wait for each other.
+struct Meeting {
+  explicit Meeting(int) {}
+};
+// The threads that share an index.
+struct PairLanes {
+  static constexpr int kCount = 1;
+  int lane = 0;
+  uint32_t most_of_warp(uint32_t value) const { return value; }
+  template <class T>
+  const T& from(const T& value, int) const {
+    return value;
+  }
+  int64_t sum(int64_t value) const { return value; }
+  bool all(bool value) const { return value; }
+};
+// Steps 1 to `steps` of all indices below `end`, in one launch, while f.goes_on(step). What f gives is added
+// up in sums[step]. False, and nothing is done: the device does not do so.
+template <class F>
+bool go_on_together(Stream& stream, uint32_t end, int, const void* cache, size_t, uint32_t steps, Meeting&,
+                    uint64_t* sums, const F& f) {
+  stream.later([=] {
+    for (uint32_t number = 1; number <= steps && f.goes_on(number); ++number)
+      for (uint32_t i = 0; i < end; ++i) sums[number] += f(i, true, cache, number, PairLanes{});
+  });
+  return true;
+}
 struct Block {
   template <class F>
   void each(uint32_t count, const F& f) const {

@@ -187,17 +187,31 @@ struct FixedPolicy {
     return {{four.at[0], four.at[1], four.at[2]}};
   }
 
-  // Adds what the other, whose cell lies `away`, does to the one. False: golden would refuse.
+  // What a pair adds to the sum of one of its particles.
+  using Part = Sum;
+  // What the other, whose cell lies `away`, does to the one. False: golden would refuse.
   template <class Cached>
-  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one,
-                                     const Velocity& v, const Position& other, const Velocity& w,
-                                     const int (&away)[3], Sum& sum) {
+  CUBOCT_DEVICE static bool part_of(const Cached& rule, const GridView&, const Position& one,
+                                    const Velocity& v, const Position& other, const Velocity& w,
+                                    const int (&away)[3], Part& part) {
     Triple y;
     for (int a = 0; a < 3; ++a) y[a] = other.at[a] + int64_t{away[a]} * rule.cell_edge;
     const auto pair = pair_kick_of<PairOutcome>(rule, triple(one.at), triple(v), type_in(one.last), y,
                                                 triple(w), type_in(other.last));
-    for (int a = 0; a < 3; ++a) sum.at[a] += pair.kick[a];
+    for (int a = 0; a < 3; ++a) part.at[a] = pair.kick[a];
     return pair.fault == Fault::none;
+  }
+  CUBOCT_DEVICE static void add(const Part& part, Sum& sum) {
+    for (int a = 0; a < 3; ++a) sum.at[a] += part.at[a];
+  }
+  template <class Cached>
+  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView& grid, const Position& one,
+                                     const Velocity& v, const Position& other, const Velocity& w,
+                                     const int (&away)[3], Sum& sum) {
+    Part part;
+    const bool sound = part_of(rule, grid, one, v, other, w, away, part);
+    add(part, sum);
+    return sound;
   }
 
   // One step of the particle. False: golden would refuse.

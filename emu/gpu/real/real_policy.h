@@ -79,18 +79,32 @@ struct RealPolicy {
                [&]<LawKind kKind, bool kDamped, bool kScaled>() { use(Variant<kKind, kDamped, kScaled>()); });
   }
 
-  // Adds what the other, whose cell lies `away`, does to the one.
+  // What a pair adds to the sum of one of its particles.
+  struct Part {
+    Real factor, d[3];
+  };
+  // What the other, whose cell lies `away`, does to the one.
   template <class Cached>
-  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView&, const Position& one,
-                                     const Velocity& v, const Position& other, const Velocity& w,
-                                     const int (&away)[3], Sum& sum) {
-    Real d[3], dv[3];
+  CUBOCT_DEVICE static bool part_of(const Cached& rule, const GridView&, const Position& one,
+                                    const Velocity& v, const Position& other, const Velocity& w,
+                                    const int (&away)[3], Part& part) {
+    Real dv[3];
     for (int a = 0; a < 3; ++a) {
-      d[a] = (other.at[a] - one.at[a]) + static_cast<Real>(away[a]) * rule.edge[a];
+      part.d[a] = (other.at[a] - one.at[a]) + static_cast<Real>(away[a]) * rule.edge[a];
       dv[a] = w.at[a] - v.at[a];
     }
-    add_pair_kick<Cached::kLaw, Cached::kDamps, Cached::kScales>(
-        rule.rule, rule.cache, d, dv, type_in(one.last), type_in(other.last), sum.at);
+    pair_factor<Cached::kLaw, Cached::kDamps, Cached::kScales>(
+        rule.rule, rule.cache, part.d, dv, type_in(one.last), type_in(other.last), part.factor);
+    return true;
+  }
+  CUBOCT_DEVICE static void add(const Part& part, Sum& sum) { add_kick(part.factor, part.d, sum.at); }
+  template <class Cached>
+  CUBOCT_DEVICE static bool add_pair(const Cached& rule, const GridView& grid, const Position& one,
+                                     const Velocity& v, const Position& other, const Velocity& w,
+                                     const int (&away)[3], Sum& sum) {
+    Part part;
+    part_of(rule, grid, one, v, other, w, away, part);
+    add(part, sum);
     return true;
   }
 

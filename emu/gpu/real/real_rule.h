@@ -225,14 +225,14 @@ CUBOCT_HD Real over_r_of_any(const RealLaw<Real>& law, const Real* cache, Real r
   return over_r<LawKind::lennard_jones, Roots>(law, own, near2, inverse2);
 }
 
-// Adds to `sum` (cutoffs per step) what j does to i, and tells whether j is inside the cutoff; d = x_j - x_i,
-// in a periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of
-// it (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the
-// negative to the last bit: only even functions of d and w enter the factor on d. No lane goes an own way,
-// but in crowded laws and with several.
+// What j does to i is -factor d (cutoffs per step); tells whether j is inside the cutoff; d = x_j - x_i, in a
+// periodic box the shortest, w = v_j - v_i (read only where kDamped), `cache`: rule.cache or a copy of it
+// (shared memory). Types are read only where kScaled. Of i and j swapped, with -d and -w, it is the negative
+// to the last bit: only even functions of d and w enter the factor. No lane goes an own way, but in crowded
+// laws and with several.
 template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, class Real>
-CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
-                             int type_i, int type_j, Real sum[3]) {
+CUBOCT_HD bool pair_factor(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
+                           int type_i, int type_j, Real& factor) {
   const Real r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   bool inside = r2 < Real(1);
   // Up to the cutoff, as bins end there.
@@ -256,8 +256,20 @@ CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, cons
     inside = inside && (strength > 0 || r2 < rule.contact2);
     k *= strength > 0 ? strength : -strength;
   }
-  k = inside ? k : Real(0);
-  for (int a = 0; a < 3; ++a) sum[a] -= k * d[a];
+  factor = inside ? k : Real(0);
+  return inside;
+}
+template <class Real>
+CUBOCT_HD void add_kick(Real factor, const Real d[3], Real sum[3]) {
+  for (int a = 0; a < 3; ++a) sum[a] -= factor * d[a];
+}
+// Adds it to `sum`.
+template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, class Real>
+CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
+                             int type_i, int type_j, Real sum[3]) {
+  Real factor;
+  const bool inside = pair_factor<kKind, kDamped, kScaled, Roots>(rule, cache, d, w, type_i, type_j, factor);
+  add_kick(factor, d, sum);
   return inside;
 }
 
