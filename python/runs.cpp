@@ -19,6 +19,7 @@
 #include "model/base/steps.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/rounds_run.h"
+#include "model/scene/readings.h"
 #include "model/trace/compare.h"
 #include "python/catch_interrupt.h"
 
@@ -48,9 +49,8 @@ RunAsked for_scene(RunAsked asked, const Scene& scene) {
 }
 
 void check_size(const Loaded& loaded, const RunAsked& asked, uint64_t steps) {
-  RunSize size = run_size(loaded.scene);
+  RunSize size = run_size(loaded.scene, steps);
   size.engine = asked.engine;
-  size.steps = steps;
   size.frame_every = asked.keep_every.value_or(0);
   size.hash_every = hashes_every(asked.engine, asked.options);
   size.cycles = asked.options.cycles;
@@ -80,8 +80,9 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   RunRequest request;
   request.steps = *asked.steps;
   if (!asked.anyway) check_size(loaded, asked, request.steps);
-  request.probes = every_so_often(scene.probe_every, request.steps);
-  request.energy_steps = every_so_often(scene.energy_every, request.steps);
+  const Readings readings = readings_of(scene, request.steps);
+  request.probes = every_so_often(readings.probes, request.steps);
+  request.energy_steps = every_so_often(readings.energies, request.steps);
   request.energies = request.totals = request.until = true;
   request.watch = !scene.loading;  // it looks for what goes wrong in motion
   request.cycles = asked.options.cycles;

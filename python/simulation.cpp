@@ -27,7 +27,7 @@ namespace cuboct::python {
 namespace {
 
 void check_size(const Loaded& loaded, const std::string& engine, const EngineOptions& options) {
-  RunSize size = run_size(loaded.scene);
+  RunSize size = run_size(loaded.scene, loaded.scene.steps);
   size.engine = engine;
   size.steps = 0;
   size.threads = options.threads;

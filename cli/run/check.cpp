@@ -210,7 +210,7 @@ Items resolve(const Loaded& loaded) {
   const ExpectedCycles cycles = expected_cycles(plan, loaded.setup.initial);
   items.add("expected cycles", cycles.step, "cycles/step",
             fmt::format("at the start; filter lanes and force pipes alone: {}", cycles.ideal));
-  add_estimate(items, estimate(scene, plan, run_size(scene)));
+  add_estimate(items, estimate(scene, plan, run_size(scene, scene.steps)));
   add_not_built(items, plan);
   items.add("plan hash", fmt::format("{:016x}", plan.hash));
   return items;
@@ -271,7 +271,7 @@ Items physics(const Loaded& loaded) {
   for (const SynopsisLine& line : synopsis_of(scene)) items.add(line.name, line.text, line.note);
   add_packing(items, scene);
   if (scene.began) items.add("begins at", start_text(scene, &plan.rule, plan.origin));
-  const Estimate cost = estimate(scene, plan, run_size(scene));
+  const Estimate cost = estimate(scene, plan, run_size(scene, scene.steps));
   add_rounds(items, scene);
   add_integers(items, scene, plan.arch);
   items.add("work", fmt::format("{}, {} of memory", work_text(cost), in_bytes(cost.memory)));

@@ -13,6 +13,7 @@
 #include "model/analysis/synopsis.h"
 #include "model/base/resources.h"
 #include "model/rules/rounds_rule.h"
+#include "model/scene/readings.h"
 #include "model/trace/trace.h"
 
 namespace cuboct {
@@ -138,13 +139,14 @@ double probes_time(const EngineRow& engine, const Scene& scene, double particles
 
 }  // namespace
 
-RunSize run_size(const Scene& scene) {
+RunSize run_size(const Scene& scene, uint64_t steps) {
+  const Readings readings = readings_of(scene, steps);
   RunSize size;
   size.engine = engine_for(scene);
-  size.steps = scene.steps;
+  size.steps = steps;
   size.frame_every = scene.frame_every;
-  size.probe_every = scene.probe_every;
-  size.energy_every = scene.energy_every;
+  size.probe_every = readings.probes;
+  size.energy_every = readings.energies;
   return size;
 }
 
@@ -234,14 +236,15 @@ void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
   const auto refuse = [&](bool option, const char* key, uint64_t every) {
     if (every == 0 || count_every(every, size.steps) <= kMost) return;
     const uint64_t would_do = round_interval(size.steps, 0.5 * kMost);
-    const std::string text = fmt::format("every {} of {} steps are {:.3g}: at most {:.3g} can be kept", every,
+    const std::string text = fmt::format("every {} of {} steps are {:.0f}: at most {:.0f} can be kept", every,
                                          size.steps, count_every(every, size.steps), kMost);
     if (option) throw InputError("--frame-every: " + text, fmt::format("--frame-every {}", would_do));
     scene.places.fail({fmt::format("run.{}", key), "run.duration", "run.steps"},
                       fmt::format("{}: {}", key, text), fmt::format("{} = {}", key, would_do));
   };
   refuse(frames_given, "frame_every", size.frame_every);
-  refuse(false, "probe_every", size.probe_every);
+  // Without probes the energies have an interval of their own.
+  refuse(false, gives(scene, "probe_every") ? "probe_every" : "energy_every", size.probe_every);
 }
 
 void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, const std::string& out) {

@@ -23,8 +23,8 @@ struct RunSize {
   int ranks = 1;
 };
 
-// The scene's own run.
-RunSize run_size(const Scene& scene);
+// The scene's run, of `steps` instead of its own.
+RunSize run_size(const Scene& scene, uint64_t steps);
 
 struct Estimate {
   uint64_t load_steps = 0;  // of a static run: what follows is of one evaluation of forces; else 0

@@ -23,6 +23,7 @@
 #include "model/base/process.h"
 #include "model/base/progress.h"
 #include "model/base/steps.h"
+#include "model/scene/readings.h"
 
 namespace cuboct {
 namespace {
@@ -85,10 +86,8 @@ uint64_t rest_of(const RunOptions& options, const Loaded& loaded, uint64_t steps
 void check_size(const RunOptions& options, const Loaded& loaded, uint64_t steps, uint64_t frame_every) {
   const EngineOptions& engines = options.engines;
   check_workers(engines.threads, engines.ranks, loaded.setup.plan);
-  if (options.anyway) return;
-  RunSize size = run_size(loaded.scene);
+  RunSize size = run_size(loaded.scene, steps);
   size.engine = options.engine;
-  size.steps = steps;
   size.frame_every = frame_every;
   size.hash_every = hashes_every(options.engine, engines);
   size.cycles = engines.cycles;
@@ -97,6 +96,7 @@ void check_size(const RunOptions& options, const Loaded& loaded, uint64_t steps,
   size.threads = engines.threads;
   size.ranks = engines.ranks;
   check_lists(loaded.scene, size, options.frames_given);
+  if (options.anyway) return;
   check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), options.out);
 }
 
@@ -147,8 +147,9 @@ Ended run_once(const RunOptions& given) {
   uint64_t every = options.frames_given ? options.frame_every : scene.frame_every;
   if (options.view && every == 0) every = std::max<uint64_t>(1, request.steps / kViewed);
   check_size(options, loaded, request.steps, every);
-  request.probes = every_so_often(scene.probe_every, request.steps);
-  request.energy_steps = every_so_often(scene.energy_every, request.steps);
+  const Readings readings = readings_of(scene, request.steps);
+  request.probes = every_so_often(readings.probes, request.steps);
+  request.energy_steps = every_so_often(readings.energies, request.steps);
   request.energies = request.totals = true;
   request.watch = !options.no_watch;
   request.until = true;

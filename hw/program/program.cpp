@@ -21,6 +21,7 @@
 #include "model/config/config.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/start.h"
+#include "model/scene/readings.h"
 #include "model/trace/trace_file.h"
 
 namespace cuboct {
@@ -48,8 +49,9 @@ void settle(const EngineProgram& program, Parsed& parsed, const Scene& scene) {
   if (!parsed.frames_given && !options.bench) run.frames = {0, run.steps};
   if (run.watch) run.energies = true;
   // Energies are read at the first and the last step too.
-  run.probes = run.energies ? every_so_often(scene.probe_every, run.steps) : probe_steps_of(scene, run.steps);
-  if (run.energies) run.energy_steps = every_so_often(scene.energy_every, run.steps);
+  const Readings readings = readings_of(scene, run.steps);
+  run.probes = run.energies ? every_so_often(readings.probes, run.steps) : probe_steps_of(scene, run.steps);
+  if (run.energies) run.energy_steps = every_so_often(readings.energies, run.steps);
   run.totals = !options.bench;
   run.cycles |= program.abilities.always_cycles;
   // A benchmark times steps: its one hash is the last state's.

@@ -2,6 +2,7 @@
 #include "model/analysis/meter.h"
 
 #include "model/rules/rounds_rule.h"
+#include "model/scene/readings.h"
 
 namespace cuboct {
 namespace {
@@ -93,8 +94,9 @@ void Meter::restore(ProbeMeter::Memory memory, const std::vector<Curve>& curves)
 
 std::vector<uint64_t> probe_steps_of(const Scene& scene, uint64_t last) {
   std::vector<uint64_t> at;
-  if (scene.probe_every == 0 || scene.probes.empty()) return at;
-  for (uint64_t s = 0; s <= last; s += scene.probe_every) at.push_back(s);
+  const uint64_t every = readings_of(scene, last).probes;
+  if (every == 0 || scene.probes.empty()) return at;
+  for (uint64_t s = 0; s <= last; s += every) at.push_back(s);
   return at;
 }
 

@@ -4,8 +4,24 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
 
 namespace cuboct {
+
+struct Scene;
+
+// Steps between two readings.
+struct Readings {
+  uint64_t probes = 0;    // 0: never
+  uint64_t energies = 0;  // a multiple of `probes`; 0: first and last only
+};
+
+// Of a run of `steps`, which need not be the scene's: an interval that the file leaves to cuboct follows the
+// steps that are run, and one that the file gives stays.
+Readings readings_of(const Scene& scene, uint64_t steps);
+
+// Whether [run] of the scene's file, or its stage, has `key`.
+bool gives(const Scene& scene, const std::string& key);
 
 // The least multiple of `of` that is not below `steps`; 0 of 0.
 inline uint64_t whole_multiple(uint64_t steps, uint64_t of) {

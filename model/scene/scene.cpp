@@ -192,6 +192,25 @@ void meet_strained_box(const Scene& scene, double time, TimeLimits& limits) {
   limits.automatic.meet(dt, what);
 }
 
+// What the file gives; without, what its probes and `steps` ask for.
+Readings readings_with(const Scene& scene, uint64_t steps, std::optional<uint64_t> probes,
+                       std::optional<uint64_t> energies) {
+  const uint64_t least = scene.loading ? scene.loading->every : 1;
+  Readings every;
+  every.probes = probes.value_or(scene.probes.empty() ? energies.value_or(0) : std::max(least, steps / 500));
+  if (scene.loading) every.probes = scene.loading->whole(every.probes);
+  // A load step takes hundreds of evaluations: beside it no reading counts.
+  if (every.probes == 0)
+    every.energies = 0;
+  else if (energies)
+    every.energies = whole_multiple(*energies, every.probes);
+  else if (scene.loading || scene.probes.empty())
+    every.energies = every.probes;
+  else
+    every.energies = usual_energy_every(steps, every.probes);
+  return every;
+}
+
 // A stage's keys replace those of [run]. `listed`: as read_body has it.
 void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, Scene& scene) {
   const auto found = root.table_at("run");
@@ -244,33 +263,27 @@ void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, S
   read_length(stage && (stage->has("steps") || stage->has("duration")) ? *stage : run, scene);
   const uint64_t whole = scene.steps, parts = stage ? stage->parts() : 1;
   scene.steps = (whole + parts - 1) / parts;
-  const auto every = [&](const char* key, uint64_t otherwise) {
-    const auto of = static_cast<uint64_t>(run.integer_or(key, 0, INT64_MAX, static_cast<int64_t>(otherwise)));
-    return stage ? static_cast<uint64_t>(stage->integer_or(key, 0, INT64_MAX, static_cast<int64_t>(of))) : of;
+  const auto given = [&](const char* key) {
+    std::optional<uint64_t> value;
+    for (const ConfigTable* table : {&run, static_cast<const ConfigTable*>(stage)}) {
+      if (!table) continue;
+      if (const auto found = table->find(key)) value = static_cast<uint64_t>(found->integer(0, INT64_MAX));
+    }
+    return value;
   };
   const bool usual_static = run.has("static");  // asked for, whether a stage has its own or not
   if (stage && stage->has("static"))
     scene.loading = read_static(*stage, scene);
   else if (usual_static)
     scene.loading = read_static(run, scene);
-  const bool energies = run.has("energy_every") || (stage && stage->has("energy_every"));
-  const uint64_t energy_every = every("energy_every", 0), least = scene.loading ? scene.loading->every : 1;
-  scene.probe_every =
-      every("probe_every", scene.probes.empty() ? energy_every : std::max(least, whole / 500));
-  scene.frame_every = every("frame_every", 0);
-  if (scene.loading) {
-    scene.probe_every = scene.loading->whole(scene.probe_every);
-    scene.frame_every = scene.loading->whole(scene.frame_every);
-  }
-  if (energy_every > 0 && scene.probe_every == 0)
+  const auto energies = given("energy_every");
+  const Readings readings = readings_with(scene, whole, given("probe_every"), energies);
+  scene.probe_every = readings.probes;
+  scene.energy_every = readings.energies;
+  scene.frame_every = given("frame_every").value_or(0);
+  if (scene.loading) scene.frame_every = scene.loading->whole(scene.frame_every);
+  if (energies.value_or(0) > 0 && scene.probe_every == 0)
     run.fail("'energy_every' needs readings: 'probe_every' is 0");
-  // A load step takes hundreds of evaluations: beside it no reading counts.
-  if (energies)
-    scene.energy_every = whole_multiple(energy_every, scene.probe_every);
-  else if (scene.loading || scene.probes.empty() || scene.probe_every == 0)
-    scene.energy_every = scene.probe_every;
-  else
-    scene.energy_every = usual_energy_every(whole, scene.probe_every);
   if (const auto accuracy = run.find("accuracy"))
     scene.accuracy = accuracy->number(quantity::number, {.low = 1e-6, .high = 0.1});
   if (const auto strain = run.find("expected_strain"))
@@ -319,6 +332,19 @@ void read_reach(const ConfigTable& root, Scene& scene) {
 }
 
 }  // namespace
+
+bool gives(const Scene& scene, const std::string& key) {
+  return scene.places.placed(InputError("").about({"run." + key})).place() != nullptr;
+}
+
+Readings readings_of(const Scene& scene, uint64_t steps) {
+  if (steps == scene.steps) return {scene.probe_every, scene.energy_every};  // of a stage's part: the stage's
+  const auto given = [&](const char* key, uint64_t every) {
+    return gives(scene, key) ? std::optional(every) : std::nullopt;
+  };
+  return readings_with(scene, steps, given("probe_every", scene.probe_every),
+                       given("energy_every", scene.energy_every));
+}
 
 double stable_time_step(const Rule& rule, double pitch, double tolerance) {
   return stable_time_step(

@@ -197,12 +197,13 @@ TEST_F(LimitsTest, ListsOfSteps) {
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(without_excerpt(answer.err),
             path +
-                ":15:15: frame_every: every 1 of 1000000000000 steps are 1e+12: at most 1e+07 can be kept\n"
+                ":15:15: frame_every: every 1 of 1000000000000 steps are 1000000000001: at most 10000000 can be "
+                "kept\n"
                 "  hint: frame_every = 300000\n");
   answer = run(scene, {"--frame-every", "7", "--out", bench_.path("project")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,
-            "--frame-every: every 7 of 1000000000000 steps are 1.43e+11: at most 1e+07 can be kept\n"
+            "--frame-every: every 7 of 1000000000000 steps are 142857142858: at most 10000000 can be kept\n"
             "  hint: --frame-every 300000\n");
   answer = run(scene, {"--hash-every", "1"});
   EXPECT_EQ(answer.code, 2);

@@ -6,6 +6,7 @@
 
 #include "model/base/error.h"
 #include "model/config/config.h"
+#include "model/scene/readings.h"
 #include "model/scene/scene.h"
 #include "tests/support/refused_with.h"
 
@@ -62,6 +63,25 @@ TEST(EnergyEvery, OfAStageReplacesThatOfTheRun) {
                              "probe_every = 40\n";
   EXPECT_EQ(every(block(run, stages, "a")), (Every{10, 20}));
   EXPECT_EQ(every(block(run, stages, "b")), (Every{40, 320}));
+}
+
+TEST(EnergyEvery, FollowsTheStepsThatAreRunUnlessGiven) {
+  const auto of = [](const Scene& scene, uint64_t steps) {
+    const Readings readings = readings_of(scene, steps);
+    return Every{readings.probes, readings.energies};
+  };
+  EXPECT_EQ(of(block("steps = 50"), 50), (Every{1, 2}));
+  EXPECT_EQ(of(block("steps = 50"), 5000), (Every{10, 200}));
+  EXPECT_EQ(of(block("steps = 5000"), 50), (Every{1, 2}));
+  EXPECT_EQ(of(block("steps = 50\nprobe_every = 3"), 5000), (Every{3, 201}));
+  EXPECT_EQ(of(block("steps = 50\nenergy_every = 20"), 5000), (Every{10, 20}));
+  EXPECT_EQ(of(block("steps = 50\nenergy_every = 0"), 5000), (Every{10, 0}));
+  EXPECT_EQ(of(block("steps = 50", ""), 5000), (Every{0, 0}));
+  EXPECT_EQ(of(block("steps = 50\nenergy_every = 7", ""), 5000), (Every{7, 7}));
+  const std::string stage = kProbe + "[[stage]]\nname = \"a\"\nprobe_every = 40\n";
+  EXPECT_EQ(of(block("steps = 50", stage, "a"), 5000), (Every{40, 200}));
+  // static = true has 50 load steps, of one step each here.
+  EXPECT_EQ(of(block("steps = 50\nstatic = true"), 5000), (Every{10, 10}));
 }
 
 TEST(EnergyEvery, NeedsReadings) {
