@@ -69,6 +69,17 @@ void check_words(const CommandText& app, const std::vector<std::string>& words) 
   }
 }
 
+// How a command is called, and what its words may be.
+std::string usage_hint(const CommandText& app, const std::string& name) {
+  const auto command = std::ranges::find(app.commands, name, &CommandText::name);
+  if (command == app.commands.end()) return "see 'cuboct --help'";
+  std::string hint = usage_of(*command);
+  for (const OptionText& option : command->options)
+    if (option.names.empty() && !option.values.empty())
+      hint += fmt::format("; {}: {}", option.type_name, list_of(option.values));
+  return hint;
+}
+
 // 'cuboct help run' is 'cuboct run --help'.
 std::vector<std::string> words_of(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
@@ -142,8 +153,7 @@ int main_of(const std::vector<std::string>& given, bool as_json, std::span<const
     check_words(app.text(), words);
     if (const auto asked = app.parse(words)) fmt::print("{}", *asked);
   } catch (const WrongWords& error) {
-    // One line, whatever words it tells of.
-    return plain(as_json ? error.what() : line_text(error.what()), 2);
+    return tell(InputError(error.what(), usage_hint(app.text(), words[0])), as_json, 2);
   } catch (const InputError& error) {
     return tell(error, as_json, 2);
   } catch (const Failed& failed) {

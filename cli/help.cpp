@@ -67,11 +67,9 @@ std::string row(const std::string& names, const std::string& text) {
 }
 
 std::string of_command(const CommandText& command) {
-  std::string usage = "usage: cuboct " + command.name + " [OPTIONS]", words, options;
+  std::string words, options;
   for (const OptionText& option : command.options) {
     if (option.names.empty()) {
-      const std::string value = value_of(option);
-      usage += option.required ? " " + value : fmt::format(" [{}]", value);
       words += row(option_names(option), option_text(option));
     } else {
       options += row(option_names(option), option_text(option));
@@ -79,7 +77,7 @@ std::string of_command(const CommandText& command) {
   }
   const auto entry = std::ranges::find(kEntries, command.name, &Entry::command);
   return fmt::format("{}: {}\n{}\n\n{}\noptions:\n{}\nexample:\n  {}\n", command.name, command.description,
-                     usage, words, options, entry->example);
+                     usage_of(command), words, options, entry->example);
 }
 
 std::string of_all(const CommandText& app) {
@@ -111,6 +109,14 @@ std::string option_text(const OptionText& option) {
   if (!option.shown_default.empty()) text += fmt::format("; default: {}", option.shown_default);
   if (option.required && !option.names.empty()) text += "; required";
   return text;
+}
+
+std::string usage_of(const CommandText& command) {
+  std::string usage = "usage: cuboct " + command.name + " [OPTIONS]";
+  for (const OptionText& option : command.options)
+    if (option.names.empty())
+      usage += option.required ? " " + value_of(option) : fmt::format(" [{}]", value_of(option));
+  return usage;
 }
 
 std::string help_text(const CommandText& command) {

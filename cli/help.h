@@ -12,6 +12,8 @@
 namespace cuboct {
 
 std::string help_text(const CommandText& command);
+// Its second line: "usage: cuboct run [OPTIONS] SCENE".
+std::string usage_of(const CommandText& command);
 
 // A row of the list of commands, in the order in which they are shown; commands of a group stand together.
 struct HelpEntry {

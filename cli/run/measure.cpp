@@ -85,7 +85,8 @@ void add_measure(Command& app, int&) {
               "rdf (radial distribution), msd (mean squared displacement), coordination, cna (common "
               "neighbours: fcc, hcp, bcc, icosahedral) or stress (of the virial)")
       .required()
-      .type_name("WHAT");
+      .type_name("WHAT")
+      .proposed(measure_names());
   command
       .option("--frames", asked.frames,
               "all, half (the second), last, steps as 0,500, or from one step to another as 100:900; "

@@ -3,7 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 namespace cuboct {
 namespace {
@@ -54,6 +56,33 @@ class Help : public CLI::FormatterBase {
  private:
   std::function<std::string(const CommandText&)> text_;
 };
+
+// CLI11's complaints in the words of all others: what was given, and what it should be.
+std::string told(const std::string& text) {
+  const auto after = [&](const std::string& begin) -> std::optional<std::string> {
+    return text.starts_with(begin) ? std::optional(text.substr(begin.size())) : std::nullopt;
+  };
+  // "--steps: 1 required N missing"
+  const size_t colon = text.find(": ");
+  const std::string name = text.substr(0, colon),
+                    rest = colon == std::string::npos ? std::string() : text.substr(colon + 2);
+  if (rest.starts_with("1 required ") && rest.ends_with(" missing"))
+    return "the option '" + name + "' has no value";
+  if (rest.starts_with("At Most 1 required but received ")) return "the option '" + name + "' is given twice";
+  if (constexpr std::string_view kRequired = " is required"; text.ends_with(kRequired)) {
+    const std::string what = text.substr(0, text.size() - kRequired.size());
+    return what.starts_with('-') ? "the option '" + what + "' is required" : "no " + what + " is given";
+  }
+  if (const auto convert = after("Could not convert: "))
+    if (const size_t equals = convert->find(" = "); equals != std::string::npos)
+      return "the option '" + convert->substr(0, equals) + "' takes a number, not '" +
+             convert->substr(equals + 3) + "'";
+  if (const auto word = after("The following argument was not expected: "))
+    return (word->starts_with('-') ? "unknown option '" : "one word too many: '") + *word + "'";
+  if (const auto words = after("The following arguments were not expected: "))
+    return "words too many: '" + *words + "'";
+  return text;
+}
 
 }  // namespace
 
@@ -156,7 +185,7 @@ std::optional<std::string> Command::parse(std::vector<std::string> words) {
     app_->exit(asked, text);
     return text.str();
   } catch (const CLI::Error& wrong) {
-    throw WrongWords(wrong.what());
+    throw WrongWords(told(wrong.what()));
   }
 }
 

@@ -158,6 +158,17 @@ class RdfMeasure : public Measure {
         {"cutoff", fmt::format("{} in {} bins", told(scene_, cutoff, "m"), rdf.g.size())},
         {"density", fmt::format("{}: {} particles over the volume of {}",
                                 told(scene_, number / volume, "1/m^3"), scene_.body.size(), volume_.of)}};
+    const auto last =
+        std::find_if(rdf.pairs.rbegin(), rdf.pairs.rend(), [](auto pairs) { return pairs > 0; });
+    const double farthest = rdf.width * static_cast<double>(rdf.pairs.rend() - last);
+    if (farthest < cutoff / 2)
+      out.notes.emplace_back(
+          "empty",
+          last == rdf.pairs.rend()
+              ? "no two particles are within the cutoff"
+              : fmt::format("no two particles within the cutoff are farther apart than {}: a shorter "
+                            "one has finer bins",
+                            told(scene_, farthest, "m")));
     if (!volume_.fills)
       out.notes.emplace_back(
           "surfaces", "g(r) falls below 1 with r, as particles at the surface have neighbours on one side");

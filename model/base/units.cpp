@@ -100,7 +100,7 @@ class Parser {
     Unit unit;
     skip_space();
     if (at_ < text_.size()) unit = product();
-    if (at_ < text_.size()) fail(fmt::format("unexpected '{}'", shown(rest())));
+    if (at_ < text_.size()) fail(fmt::format("unexpected '{}'", shown(rest())), hint_for_rest());
     for (std::string_view digits : numbers)
       result.values.push_back(scaled(digits, unit.decimal) * unit.factor);
     result.dimension = unit.dimension;
@@ -219,14 +219,29 @@ class Parser {
            (std::isalpha(static_cast<unsigned char>(text_[at_])) || (text_[at_] & 0x80) || text_[at_] == '%'))
       ++at_;
     const std::string_view name = text_.substr(start, at_ - start);
-    if (name.empty()) fail("expected a unit");
+    if (name.empty()) fail("expected a unit", hint_for_rest());
     if (const NamedUnit* unit = find_unit(name)) return {unit->decimal, unit->factor, unit->dimension};
     for (const Prefix& prefix : kPrefixes) {
       if (!name.starts_with(prefix.name)) continue;
       if (const NamedUnit* unit = find_unit(name.substr(prefix.name.size())))
         return {unit->decimal + prefix.decimal, unit->factor, unit->dimension};
     }
-    fail(fmt::format("unknown unit '{}'", shown(name)), did_you_mean(std::string(name), common_spellings()));
+    fail(fmt::format("unknown unit '{}'", shown(name)), hint_for(name));
+  }
+
+  // Of what stands where a text should end, or its unit begin.
+  std::string hint_for_rest() const {
+    const char next = at_ < text_.size() ? text_[at_] : ' ';
+    if (next == ',') return "several values stand in brackets, as in \"[10, 4, 4] mm\"";
+    if (is_digit(next) && at_ > 0 && std::isalpha(static_cast<unsigned char>(text_[at_ - 1])))
+      return fmt::format("a power is written with '^': \"^{}\"", next);
+    if (std::isalpha(static_cast<unsigned char>(next)))
+      return "units are joined by '*' or '/', as in \"N*m\"";
+    return {};
+  }
+  std::string hint_for(std::string_view name) const {
+    if (name == "C" || name == "°C" || name == "degC") return "temperatures are in K: 0 °C is 273.15 K";
+    return did_you_mean(std::string(name), common_spellings());
   }
 
   std::string_view text_;

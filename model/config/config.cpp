@@ -167,6 +167,20 @@ void check_keys(const ConfigFile& file) {
   }
 }
 
+// What toml++ says of a file that is no TOML; of what happens most in words that say what to write.
+std::pair<std::string, std::string> told_of_toml(const std::string& said) {
+  if (said.find("control characters other than TAB") != std::string::npos)
+    return {"a line ends, or has a control character, within a text",
+            "close the text by the quote that began it"};
+  const std::string key = "cannot redefine existing table '";
+  if (const size_t at = said.find(key); at != std::string::npos && said.ends_with("array-of-tables"))
+    if (const std::string rest = said.substr(at + key.size()); rest.find('\'') != std::string::npos) {
+      const std::string name = rest.substr(0, rest.find('\''));
+      return {said, fmt::format("write [[{}]] for each of them", name)};
+    }
+  return {said, {}};
+}
+
 // The byte-order mark in UTF-8.
 void drop_mark(std::string& text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
@@ -177,6 +191,29 @@ std::string hint_for(const ConfigNode& table, const std::string& key, const std:
   const std::string foreign =
       foreign_hint(foreign_keys(), key, table.alias.empty() ? table.path : table.alias);
   return foreign.empty() ? did_you_mean(key, free) : foreign;
+}
+
+// A key that no one has asked for yet, and that looks like one that the table lacks, or is another tool's
+// word. Empty: there is none.
+std::string misspelt_in(const ConfigNode& table, bool foreign_too) {
+  std::vector<std::string> lacking;
+  for (const std::string& key : table.asked)
+    if (field(table, key) == nullptr) lacking.push_back(key);
+  for (const ConfigNode& item : table.items) {
+    if (table.asked.contains(item.key)) continue;
+    const std::string foreign = foreign_too ? hint_for(table, item.key, {}) : "";
+    const std::string hint = foreign.empty() ? did_you_mean(item.key, lacking) : foreign;
+    if (!hint.empty()) return fmt::format("line {} has the key '{}': {}", item.key_line, item.key, hint);
+  }
+  return {};
+}
+
+// What a table lacks may stand under a wrong key, in it or beside it.
+std::string with_misspelt(const ConfigFile& file, const ConfigNode& table, const std::string& hint) {
+  std::string misspelt = misspelt_in(table, true);
+  if (misspelt.empty() && &table != &file.root) misspelt = misspelt_in(file.root, false);
+  if (misspelt.empty()) return hint;
+  return hint.empty() ? misspelt : hint + "; " + misspelt;
 }
 
 void check_asked(const ConfigFile& file, const ConfigNode& node) {
@@ -208,9 +245,10 @@ void ConfigValue::mark(Places& places, const std::string& path) const {
 }
 
 void ConfigValue::fail(const std::string& message, const std::string& hint) const {
+  const std::string told = is_table() ? with_misspelt(*file_, *node_, hint) : hint;
   // What is said of the whole file stands at its first line, which says nothing.
-  if (node_ == &file_->root) throw InputError(file_->path, node_->line, node_->column, message, hint);
-  fail_at(*file_, node_->line, node_->column, message, hint);
+  if (node_ == &file_->root) throw InputError(file_->path, node_->line, node_->column, message, told);
+  fail_at(*file_, node_->line, node_->column, message, told);
 }
 
 void ConfigValue::fail_in(size_t byte, const std::string& message, const std::string& hint) const {
@@ -265,6 +303,10 @@ bool ConfigValue::boolean() const {
 }
 
 int64_t ConfigValue::integer(int64_t low, int64_t high) const {
+  constexpr double kExact = 1e15;  // beyond it digits of a double are not those that were written
+  if (node_->kind == Kind::real && std::abs(node_->real) < kExact && node_->real == std::trunc(node_->real))
+    fail(fmt::format("'{}' must be a whole number, not a decimal one", node_->key),
+         fmt::format("write {:.0f}: a point or an exponent makes a decimal number in TOML", node_->real));
   if (node_->kind != Kind::integer) wants("a whole number");
   if (node_->integer < low || node_->integer > high) {
     fail(high == std::numeric_limits<int64_t>::max()
@@ -296,7 +338,8 @@ size_t ConfigValue::choice(const std::string& what, const std::vector<std::strin
   const std::string text = string();
   const auto found = std::ranges::find(names, text);
   if (found != names.end()) return static_cast<size_t>(found - names.begin());
-  std::string hint = node_->key == "kind" ? foreign_hint(foreign_kinds(), text, what) : "";
+  const bool many = node_->key == "kind" || node_->key == "units";
+  std::string hint = many ? foreign_hint(foreign_kinds(), text, what) : "";
   if (hint.empty()) hint = did_you_mean(text, names);
   fail(fmt::format("unknown {} '{}'", what, text), hint.empty() ? "known: " + list_of(names) : hint);
 }
@@ -541,7 +584,8 @@ ConfigTable parse_config(std::string text, const std::string& path) {
     file->root = convert(toml::parse(file->text, path), "", "");
   } catch (const toml::parse_error& error) {
     const auto& at = error.source().begin;
-    fail_at(*file, static_cast<int>(at.line), static_cast<int>(at.column), std::string(error.description()));
+    const auto [message, hint] = told_of_toml(std::string(error.description()));
+    fail_at(*file, static_cast<int>(at.line), static_cast<int>(at.column), message, hint);
   }
   file->root.line = file->root.column = 1;
   file->root.opened = true;

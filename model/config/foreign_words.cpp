@@ -47,6 +47,15 @@ constexpr ForeignWord kKeys[] = {
      "bodies"},
     {"dimension dimensions", "", "a flat scene is one layer of particles", "bodies"},
     {"pair_style pair_coeff bond_style", "", "[law] or [rule] has the forces: docs/user/scene.md", ""},
+    {"nlist neighbor neighbors neighbour_list neigh_modify skin", "",
+     "the engine chooses how it finds neighbours: nothing is to be set", ""},
+    {"fix fixes", "", "[[constraint]] holds and moves regions, [damping] damps: docs/user/coming-from.md",
+     ""},
+    {"dump dumps", "", "[run] frame_every keeps frames; 'cuboct run --frames lammps' writes a dump", ""},
+    {"frames output_every dump_every", "run stage", "'frame_every' is the number of steps between two frames",
+     ""},
+    {"E youngs", "law bond.law rule", "the key is 'youngs_modulus'", ""},
+    {"rho", "", "the key is 'density'", ""},
 };
 
 constexpr ForeignWord kKinds[] = {
@@ -71,6 +80,9 @@ constexpr ForeignWord kKinds[] = {
      "pair laws have no thermostat; the rules scenes/rules/langevin.toml and dpd.toml hold a temperature",
      "motion"},
     {"pressure", "constraint", "kind = \"pulled\" has a traction over an area", ""},
+    {"metal real cgs electron micro nano si", "units",
+     "\"SI\": values carry their units, as \"300 K\"; [particles] units are those of a file", ""},
+    {"lj", "units", "\"reduced\": all values are plain numbers", ""},
 };
 
 bool has_word(std::string_view list, std::string_view word) {

@@ -136,6 +136,8 @@ std::shared_ptr<const PairLaw> read_preset(const ConfigTable& law, const std::st
     }
     stiffness = stiffness_from_modulus(positive(law, "youngs_modulus", quantity::pressure), direction, pitch);
   } else {
+    if (!law.has("stiffness"))
+      law.fail(fmt::format("missing key 'stiffness' or 'youngs_modulus' in '{}'", law.key()));
     stiffness = positive(law, "stiffness", quantity::stiffness);
   }
   const auto whole = placed(law, [&] { return preset_law(name, pitch, stiffness); });

@@ -80,7 +80,7 @@ TEST_F(Programs, WrongCommandLinesAndScenesEndWithTwo) {
     const std::string scene = "'" CUBOCT_SOURCE_DIR "/scenes/lj_block.toml'";
     ends("", "a scene is required\n");
     ends(scene, "--out is required\n");
-    ends(scene + " --out t.h5 --stepz", "The following argument was not expected: --stepz\n" + help);
+    ends(scene + " --out t.h5 --stepz", "unknown option '--stepz'\n" + help);
     ends(scene + " --out t.h5 --stall-rate 2",
          "--stall-rate: Value 2 not in range 0.000000 to 0.990000\n" + help);
     ends("none.toml --out t.h5", "none.toml: cannot read this file\n");

@@ -29,6 +29,6 @@ refuses "emit --fit: $synthesis" emit "$scene" --fit ecp5-85 --out "$build/proje
 refuses '--ranks 2: the lattice engine was built without MPI
   hint: --threads uses the cores of this machine' run "$scene" --steps 1 --ranks 2
 refuses 'the systemc engine is not built: no program cuboct-systemc beside cuboct
-  hint: install libsystemc-dev and build again' run "$scene" --steps 1 --engine systemc
+  hint: install libsystemc-dev and build again; a directory of '\''cmake --install'\'' has no such engine' run "$scene" --steps 1 --engine systemc
 "$build/cuboct" crosscheck "$scene" --steps 2 --engines golden,lattice | grep -qx 'matched 512 updates over 2 steps in 2 engines'
 echo "nine refusals, and a run"

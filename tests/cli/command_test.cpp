@@ -75,7 +75,20 @@ TEST(Command, ShowsTheLineThatIsWrong) {
 }
 
 TEST(Command, RefusesWrongValues) {
-  expect_refusal({"run"}, "scene is required\n");
+  const std::string usage = "  hint: usage: cuboct run [OPTIONS] SCENE\n";
+  expect_refusal({"run"}, "no scene is given\n" + usage);
+  expect_refusal({"run", "scenes/lj_block.toml", "--steps"}, "the option '--steps' has no value\n" + usage);
+  expect_refusal({"run", "scenes/lj_block.toml", "--steps", "1", "--steps", "2"},
+                 "the option '--steps' is given twice\n" + usage);
+  expect_refusal({"run", "scenes/lj_block.toml", "scenes/coupon.toml"},
+                 "one word too many: 'scenes/coupon.toml'\n" + usage);
+  expect_refusal({"elastic", "scenes/lj_block.toml", "--strain", "abc"},
+                 "the option '--strain' takes a number, not 'abc'\n"
+                 "  hint: usage: cuboct elastic [OPTIONS] [SCENE]\n");
+  expect_refusal(
+      {"measure", "out/melt"},
+      "no measure is given\n"
+      "  hint: usage: cuboct measure [OPTIONS] DIR WHAT; WHAT: rdf, msd, coordination, cna or stress\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--steps", "-3"},
                  "--steps: '-3' is not a whole number below 2^63\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--steps", "many"},
@@ -284,10 +297,12 @@ TEST(Command, HintsOfAnErrorWithinAFileAreLines) {
 TEST(Command, SaysHowToGetAnEngineThatIsNotBuilt) {
   expect_refusal({"run", "scenes/lj_block.toml", "--engine", "systemc"},
                  "the systemc engine is not built: no program cuboct-systemc beside cuboct\n"
-                 "  hint: install libsystemc-dev and build again\n");
+                 "  hint: install libsystemc-dev and build again; a directory of 'cmake --install' has no "
+                 "such engine\n");
   expect_refusal({"crosscheck", "scenes/lj_block.toml", "--engines", "golden,rtl", "--steps", "1"},
                  "the rtl engine is not built: no program cuboct-rtl beside cuboct\n"
-                 "  hint: install verilator and libsystemc-dev and build again\n");
+                 "  hint: install verilator and libsystemc-dev and build again; a directory of 'cmake "
+                 "--install' has no such engine\n");
 }
 
 TEST(Command, RefusesAnOutputThatCannotBeWrittenBeforeTheRun) {

@@ -30,7 +30,7 @@ LEFTOVER = re.compile(r"(-wal|-shm|-journal|\.tmp|\.tmp\.\w+|~|\.part|\.partial)
 NOWHERE = re.compile(
     r"holds no run|is not a file|no such file|is a directory|cannot (read|write|make|open)|memory|disk|belongs to|made by another|"
     r"already|this file is in|another study|another fit|another scene|unknown option|has no frames|no checkpoint|"
-    r"left out|the value of|argument \d+ of|is required|excludes|requires|"
+    r"left out|the value of|argument \d+ of|is required|is given|has no value|word too many|words too many|takes a number|excludes|requires|"
     r"^--|: --|in doubles|particles: '|interrupted")
 
 

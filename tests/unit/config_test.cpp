@@ -46,6 +46,28 @@ TEST(Config, AMisspeltRequiredKeyIsCalledSo) {
             "a.toml:2:1: missing key 'pitch' in 'p.q'");
 }
 
+// What a table lacks may stand under a name of the user's own: the message tells both.
+TEST(Config, NamesAMisspeltKeyBesideWhatIsMissing) {
+  const auto read = [](const ConfigTable& root) {
+    const ConfigTable law = root.at("law").table();
+    if (!law.has("youngs_modulus")) law.at("stiffness");
+  };
+  EXPECT_EQ(error_of("[law]\nyoung_modulus = 3\n", read),
+            "a.toml:1:1: missing key 'stiffness' in 'law'\n"
+            "  hint: line 2 has the key 'young_modulus': did you mean 'youngs_modulus'?");
+  EXPECT_EQ(error_of("[law]\nE = 3\n", read),
+            "a.toml:1:1: missing key 'stiffness' in 'law'\n"
+            "  hint: line 2 has the key 'E': the key is 'youngs_modulus'");
+  EXPECT_EQ(error_of("[law]\nvalue = 3\n", read), "a.toml:1:1: missing key 'stiffness' in 'law'");
+  // So may a table beside it. A message with a hint keeps it.
+  const auto pack = [](const ConfigTable& root) {
+    if (!root.has("geometry")) root.at("packing").fail("nothing says what to pack", "add [geometry]");
+  };
+  EXPECT_EQ(error_of("[packing]\n[geometri]\n", pack),
+            "a.toml:1:1: nothing says what to pack\n"
+            "  hint: add [geometry]; line 2 has the key 'geometri': did you mean 'geometry'?");
+}
+
 TEST(Config, WantsUnits) {
   const auto read = [](const ConfigTable& root) {
     root.number("pitch", quantity::length, Range::positive());
@@ -91,6 +113,9 @@ TEST(Config, ChecksRangesAndKinds) {
   const auto count = [](const ConfigTable& root) { root.integer_or("n", 1, 4, 1); };
   EXPECT_EQ(error_of("n = 5", count), "a.toml:1:5: 'n' must be between 1 and 4, not 5");
   EXPECT_EQ(error_of("n = 1.5", count), "a.toml:1:5: 'n' must be a whole number, not a number");
+  EXPECT_EQ(error_of("n = 1e3", count),
+            "a.toml:1:5: 'n' must be a whole number, not a decimal one\n"
+            "  hint: write 1000: a point or an exponent makes a decimal number in TOML");
   const auto axes = [](const ConfigTable& root) { root.axes("axes"); };
   EXPECT_EQ(error_of("axes = \"xyx\"", axes),
             "a.toml:1:8: 'axes' must name axes, such as \"x\" or \"xyz\", not \"xyx\"");
@@ -134,9 +159,28 @@ TEST(Config, PassesSyntaxErrorsOn) {
   const auto read = [](const ConfigTable&) {};
   EXPECT_EQ(error_of("a = 1\nb = = 2\n", read).substr(0, 12), "a.toml:2:5: ");
   EXPECT_EQ(error_of("a = 1\na = 2\n", read).substr(0, 9), "a.toml:2:");
+  EXPECT_EQ(error_of("a = \"text\nb = 2\n", read),
+            "a.toml:1:10: a line ends, or has a control character, within a text\n"
+            "  hint: close the text by the quote that began it");
+  EXPECT_EQ(error_of("[end]\na = 1\n[[end]]\na = 2\n", read),
+            "a.toml:3:1: Error while parsing table header: cannot redefine existing table 'end' as "
+            "array-of-tables\n"
+            "  hint: write [[end]] for each of them");
   EXPECT_THROW(read_config("no/such/file.toml"), InputError);
   EXPECT_EQ(refused_with([&] { read_config("no/such/file.toml"); }),
             "no/such/file.toml: cannot read this file");
+}
+
+TEST(Config, ProposesTheNearestFile) {
+  const std::filesystem::path directory =
+      std::filesystem::temp_directory_path() / fmt::format("cuboct_beside.{}", getpid());
+  std::filesystem::create_directory(directory);
+  std::ofstream(directory / "beam.toml") << "a = 1\n";
+  const std::string path = (directory / "baem.toml").string();
+  EXPECT_EQ(
+      refused_with([&] { read_config(path); }),
+      path + ": cannot read this file\n  hint: did you mean '" + (directory / "beam.toml").string() + "'?");
+  std::filesystem::remove_all(directory);
 }
 
 // What no scene is: a device without end, a directory, a pipe that no one writes into, more than is read.

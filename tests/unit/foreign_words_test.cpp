@@ -64,6 +64,12 @@ TEST(ForeignWords, AreToldWhereTheyWent) {
          "  hint: pair laws have no thermostat; the rules scenes/rules/langevin.toml and dpd.toml hold a "
          "temperature: "
          "docs/user/limits.md#motion");
+  expect("run", "nlist = \"cell\"",
+         "a.toml:12:1: unknown key 'nlist'\n"
+         "  hint: the engine chooses how it finds neighbours: nothing is to be set");
+  expect("run", "[[fix]]\nkind = \"nve\"",
+         "a.toml:12:3: unknown key 'fix'\n"
+         "  hint: [[constraint]] holds and moves regions, [damping] damps: docs/user/coming-from.md");
   // In other tables a word means what it says, or nothing.
   expect("law", "timestep = \"1 us\"", "a.toml:10:1: unknown key 'timestep'");
   expect("packing", "omega = 3", "a.toml:4:1: unknown key 'omega'");
@@ -89,6 +95,9 @@ TEST(ForeignWords, KindsToo) {
       "  hint: forces end at a cutoff; a rule of text has screened charges: docs/user/limits.md#charges");
   EXPECT_EQ(of("tersoff", "law"),
             "a.toml:4:8: unknown law 'tersoff'\n  hint: [rule] has this kind, in the place of [law]");
+  EXPECT_EQ(refused_with([] { parse_scene("units = \"metal\"\n", "a.toml"); }),
+            "a.toml:1:9: unknown units 'metal'\n"
+            "  hint: \"SI\": values carry their units, as \"300 K\"; [particles] units are those of a file");
   EXPECT_EQ(of("elastik", "law"), "a.toml:4:8: unknown law 'elastik'\n  hint: did you mean 'elastic'?");
 }
 

@@ -375,6 +375,22 @@ TEST(MeasuredFrames, AreChosenByWordsStepsAndRanges) {
                   "200, 300, 350");
 }
 
+// Bins that no pair of the body can be in are told: two particles 0.9 m apart, in bins of 0.5 m up to 10 m.
+TEST(Measures, TellOfACutoffBeyondTheBody) {
+  const Scene scene = pair_scene(0.9);
+  const auto empty = [&](double cutoff) {
+    const auto rdf = make_measure("rdf", scene, {.cutoff = cutoff, .bins = 20, .volume = 1});
+    rdf->add({.body = scene.body});
+    for (const auto& [name, text] : rdf->result().notes)
+      if (name == "empty") return text;
+    return std::string("none");
+  };
+  EXPECT_EQ(empty(10),
+            "no two particles within the cutoff are farther apart than 1 m: a shorter one has finer bins");
+  EXPECT_EQ(empty(1), "none");
+  EXPECT_EQ(empty(0.5), "no two particles are within the cutoff");
+}
+
 TEST(Measures, RefuseWhatTheyHaveNot) {
   const Scene scene = pair_scene(0.9);
   const auto refusal = [&](const std::string& name, const MeasureChoice& choice) {

@@ -73,7 +73,11 @@ TEST(Units, RefuseWithTheReason) {
   EXPECT_EQ(error("1 m^"), "expected an exponent between -9 and 9 after '^' in \"1 m^\"");
   EXPECT_EQ(error("1 m^10"), "expected an exponent between -9 and 9 after '^' in \"1 m^10\"");
   EXPECT_EQ(error("1 (m"), "expected ')' in \"1 (m\"");
-  EXPECT_EQ(error("1 m m"), "unexpected 'm' in \"1 m m\"");
+  EXPECT_EQ(error("1 m m"), "unexpected 'm' in \"1 m m\" | units are joined by '*' or '/', as in \"N*m\"");
+  EXPECT_EQ(error("3 N/mm2"), "unexpected '2' in \"3 N/mm2\" | a power is written with '^': \"^2\"");
+  EXPECT_EQ(error("10, 4, 4 mm"),
+            "expected a unit in \"10, 4, 4 mm\" | several values stand in brackets, as in \"[10, 4, 4] mm\"");
+  EXPECT_EQ(error("27 C"), "unknown unit 'C' in \"27 C\" | temperatures are in K: 0 °C is 273.15 K");
   EXPECT_EQ(error("[1, 2 m"), "expected ',' or ']' in \"[1, 2 m\"");
   EXPECT_EQ(error("1e400 m"), "number out of range in \"1e400 m\"");
   EXPECT_EQ(error("1e99999999999 m"), "number out of range in \"1e99999999999 m\"");
