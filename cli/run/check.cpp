@@ -116,6 +116,7 @@ Items physics(const Loaded& loaded);
 // Those of a run, and of a lattice that is larger than the motion asks for.
 std::vector<std::string> check_warnings(const Loaded& loaded, bool real) {
   std::vector<std::string> warnings = warnings_of(loaded, real);
+  if (loaded.scene.steps == 0) warnings.emplace_back("the run makes no step: 'steps' is 0");
   if (real) return warnings;
   if (std::string wide = reach_warning(loaded.scene, loaded.setup.plan); !wide.empty())
     warnings.push_back(std::move(wide));
@@ -291,11 +292,14 @@ Items physics(const Loaded& loaded) {
     return items;
   }
   add_reach(items, loaded);
-  if (!plan.rule.cubic())
+  if (plan.program != nullptr) {
+    // add_integers has told it.
+  } else if (!plan.rule.cubic()) {
     items.add("machine", "none: nodes have cubic cells, and no cube divides the periodic box");
-  else
+  } else {
     items.add("machine", fmt::format("{} node{}; --machine tells formats, records and cycles", plan.nodes(),
                                      plan.nodes() == 1 ? "" : "s"));
+  }
   if (!warnings.empty()) add_warnings(items, warnings, {});
   return items;
 }
@@ -337,7 +341,7 @@ void add_check(Command& app, int&) {
   options->answer.add_to(command);
   command.callback([options] {
     const Items stages = stages_in(options->input);
-    const Loaded loaded = options->machine ? load(options->input) : load_plan(options->input);
+    const Loaded loaded = options->machine ? load_machine(options->input) : load_plan(options->input);
     check_bonds(loaded.scene);
     Items items = options->answer.json || options->machine ? resolve(loaded) : physics(loaded);
     for (const Items::Item& stage : stages.all()) items.add(stage.name, stage.text);

@@ -2,9 +2,11 @@
 #include "model/analysis/measure.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
+#include <set>
 #include <span>
 
 #include "model/analysis/state_reader.h"
@@ -13,6 +15,8 @@
 #include "model/base/tensor.h"
 #include "model/contract/fixed_step.h"
 #include "model/contract/law_energies.h"
+#include "model/program/rule_program.h"
+#include "model/rules/rounds_rule.h"
 
 namespace cuboct {
 namespace {
@@ -303,8 +307,84 @@ double pressure(const Energies& energies, const Mat3& virial_stress, double volu
   return energies.kinetic / (1.5 * volume) - virial_stress.trace() / 3;
 }
 
+namespace {
+
+// Numbers of a rule's text that change as the energy does not know: velocities and noise make them, or they
+// are kept from step to step by a law of their own.
+class Unconserved {
+ public:
+  explicit Unconserved(const RuleProgram& program) : program_(program) {
+    seed(program.particle, particle_);
+    seed(program.bond, bond_);
+    for (size_t before = 1, now = 0; before != now;) {
+      before = particle_.size() + bond_.size();
+      for (const ProgramRound& round : program.rounds) pass(round);
+      now = particle_.size() + bond_.size();
+    }
+  }
+
+  bool make_the_force() const {
+    return std::ranges::any_of(std::array{0U, 1U, 2U},
+                               [&](uint32_t axis) { return particle_.contains(program_.force + axis); });
+  }
+
+ private:
+  static void seed(const std::vector<ProgramField>& fields, std::set<uint32_t>& numbers) {
+    for (const ProgramField& field : fields)
+      for (uint32_t k = 0; field.kept && k < field.numbers(); ++k) numbers.insert(field.first + k);
+  }
+
+  void pass(const ProgramRound& round) {
+    sums_.clear();
+    const std::vector<bool> pair = reached(round.pair);
+    for (const ProgramWrite& write : round.bonds)
+      if (pair[write.node]) bond_.insert(write.number);
+    for (uint32_t k = 0; k < round.terms.size(); ++k)
+      if (pair[round.terms[k]] || pair[round.when[k]]) sums_.insert(k);
+    const std::vector<bool> finish = reached(round.finish);
+    for (const ProgramWrite& write : round.made)
+      if (finish[write.node]) particle_.insert(write.number);
+  }
+
+  bool begins(const RealInput& input) const {
+    switch (input.source) {
+      case RealSource::own_velocity:
+      case RealSource::other_velocity:
+      case RealSource::noise:
+        return true;
+      case RealSource::own_field:
+      case RealSource::other_field:
+        return particle_.contains(input.index);
+      case RealSource::bond_field:
+        return bond_.contains(input.index);
+      case RealSource::sum:
+        return sums_.contains(input.index);
+      default:
+        return false;
+    }
+  }
+
+  // By node; a node comes after those that it is made of.
+  std::vector<bool> reached(const RealGraph& graph) const {
+    std::vector<bool> of(graph.nodes().size());
+    for (size_t n = 0; n < of.size(); ++n) {
+      const RealNode& node = graph.nodes()[n];
+      if (node.op == RealOp::input) of[n] = begins(node.input);
+      for (int k = 0; k < arity(node.op); ++k) of[n] = of[n] || of[node.of[static_cast<size_t>(k)]];
+    }
+    return of;
+  }
+
+  const RuleProgram& program_;
+  std::set<uint32_t> particle_, bond_, sums_;
+};
+
+}  // namespace
+
 bool keeps_energy(const Rule& rule, const Periodic& periodic) {
   if (rule.damping.coefficient > 0) return false;
+  if (const RoundsRule* rounds = rule.rounds.get(); rounds != nullptr && rounds->text() != nullptr)
+    if (!rounds->text()->still && Unconserved(*rounds->text()).make_the_force()) return false;
   for (const ParticleType& type : rule.types) {
     if (type.pd) return false;
     for (int axis = 0; axis < 3; ++axis) {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <regex>
+#include <sstream>
 
 #include "tests/cli/shell.h"
 
@@ -63,6 +64,24 @@ TEST(Check, CountsTheCellsThatTheLatticeLacks) {
                       "not in the lattice)\n"),
       std::string::npos)
       << answer.out;
+}
+
+// With --machine and without: a rule of text has one machine, whose records its rounds have.
+TEST(Check, TellsTheMachineOfARuleOfText) {
+  const auto told = [](std::vector<std::string> words) {
+    const Answer answer = Bench(false).cuboct(words);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    std::string lines;
+    std::istringstream in(answer.out);
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("machine")) lines += std::regex_replace(line, std::regex(" +"), " ") + "\n";
+    return lines;
+  };
+  const std::string plain = told({"check", "scenes/rules/heat.toml"});
+  EXPECT_TRUE(std::regex_match(plain, std::regex("machine \\d+ nodes of \\d+ slots of \\d+ bits\n"
+                                                 "machine of conduct a record of [^\n]*\n")))
+      << plain;
+  EXPECT_EQ(told({"check", "scenes/rules/heat.toml", "--machine"}), plain);
 }
 
 TEST(Check, SaysWhatSetsTheLimitOfDt) {

@@ -195,11 +195,22 @@ TEST_F(LimitsTest, ListsOfSteps) {
   const std::string path = bench_.path("scene.toml");
   Answer answer = run(scene + "frame_every = 1\n", {});
   EXPECT_EQ(answer.code, 2);
-  EXPECT_EQ(without_excerpt(answer.err),
-            path +
-                ":15:15: frame_every: every 1 of 1000000000000 steps are 1000000000001: at most 10000000 can be "
-                "kept\n"
-                "  hint: frame_every = 300000\n");
+  EXPECT_EQ(
+      without_excerpt(answer.err),
+      path +
+          ":15:15: frame_every: every 1 of 1000000000000 steps are 1000000000001: at most 10000000 can be "
+          "kept\n"
+          "  hint: frame_every = 300000\n");
+  // What cannot be listed is refused whatever else is asked, at the key that says so.
+  for (const char* key : {"probe_every", "energy_every"}) {
+    answer = run(scene + key + " = 1\n", {"--anyway"});
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(
+        without_excerpt(answer.err),
+        fmt::format("{}:15:{}: {}: every 1 of 1000000000000 steps are 1000000000001: at most 10000000 can "
+                    "be kept\n  hint: {} = 300000\n",
+                    path, std::string(key).size() + 4, key, key));
+  }
   answer = run(scene, {"--frame-every", "7", "--out", bench_.path("project")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,

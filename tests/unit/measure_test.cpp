@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+
+#include "model/scene/scene.h"
 
 namespace cuboct {
 namespace {
@@ -153,6 +156,31 @@ TEST(Measure, KnowsWhichRulesConserveWhat) {
   Rule falling = two.rule;
   falling.types[0].gravity[2] = -9.81;
   EXPECT_FALSE(keeps_energy(falling, {Vec3::Zero(), Vec3(0, 0, 1)}));
+}
+
+// A rule of text keeps its energy unless velocities, noise or what goes on by a law of its own make forces.
+TEST(Measure, KnowsWhichTextsConserveEnergy) {
+  const auto keeps = [](const std::string& round, const std::string& fields = "") {
+    const Scene scene = parse_scene(
+        "units = \"reduced\"\nmass = 1\npacking = { pitch = 1 }\nbox = { cells = [2, 2, 2] }\n"
+        "run = { dt = 0.01, steps = 1 }\n[rule]\nreach = \"1.2\"\n" +
+            fields + round,
+        "s.toml");
+    return keeps_energy(scene.rule, {});
+  };
+  const std::string spring = "[[rule.round]]\nsum.force = \"(r - 1) * d / r";
+  EXPECT_TRUE(keeps(spring + "\"\n"));
+  EXPECT_FALSE(keeps(spring + " + v_j - v_i\"\n"));
+  EXPECT_FALSE(keeps(spring + " + noises(1)\"\n"));
+  // What velocities make is felt through a field of an earlier round, and not where only frames show it.
+  const std::string fast = "particle.fast = {}\n";
+  const std::string first = "[[rule.round]]\nfinish.fast = \"dot(v, v)\"\n";
+  EXPECT_FALSE(keeps(first + spring + " * (1 + fast_i)\"\n", fast));
+  EXPECT_TRUE(keeps(first + spring + "\"\n", fast));
+  // Springs that soften as a field goes on.
+  const std::string age = "particle.age = {}\n", ages = "finish.age = \"age + dt\"\n";
+  EXPECT_FALSE(keeps(spring + " / (1 + age_i + age_j)\"\n" + ages, age));
+  EXPECT_TRUE(keeps(spring + "\"\n" + ages, age));
 }
 
 Probe probe_of(Probe::Kind kind, const std::string& name) {
