@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "model/base/filled_frame.h"
 #include "model/base/json.h"
 #include "model/base/text.h"
 #include "study/machines/machine_table.h"

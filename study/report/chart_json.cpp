@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
 #include "model/base/json.h"
 
@@ -63,22 +62,6 @@ std::string chart_json(const Chart& chart, std::vector<std::string>& columns) {
 
 std::string charts_json(const std::vector<Chart>& charts, std::vector<std::string>& columns) {
   return json_array(charts, [&](const Chart& chart) { return chart_json(chart, columns); });
-}
-
-std::string filled_frame(std::string_view frame,
-                         const std::vector<std::pair<const char*, std::string>>& parts) {
-  std::string page;
-  size_t from = 0;
-  for (const auto& [name, text] : parts) {
-    const size_t at = frame.find(name, from);
-    if (at == std::string_view::npos)
-      throw std::logic_error(fmt::format("study/report/web: a frame has no {}", name));
-    page += frame.substr(from, at - from);
-    page += text;
-    from = at + std::string_view(name).size();
-  }
-  page += frame.substr(from);
-  return page;
 }
 
 }  // namespace cuboct::study

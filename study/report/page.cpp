@@ -7,6 +7,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "model/base/filled_frame.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
