@@ -142,14 +142,14 @@ struct Recorder::Impl {
     if (output.writer && attempt([&] { output.writer->add(frame); })) ++output.frames;
   }
 
-  void draw(const Frame& frame) {
+  void draw(const Frame& frame, const State* state) {
     add(rasters, frame);
     add(vtk, frame);
     add(xyz, frame);
     add(packed_xyz, frame);
     add(ase, frame);
     add(lammps, frame);
-    if (options.see) options.see(frame);
+    if (options.see) options.see(frame, state);
     ++frames;
   }
 
@@ -190,14 +190,14 @@ void Recorder::keep(const State& state) {
   Impl& to = *impl_;
   to.begin();
   if (!to.options.no_states) to.states = true, to.add(to.trace, state);
-  to.draw(to.maker.make(state));
+  to.draw(to.maker.make(state), &state);
 }
 
 void Recorder::keep(const RealFrame& frame) {
   Impl& to = *impl_;
   to.begin();
   if (!to.options.no_states) to.states = true, to.add(to.trace, frame);
-  to.draw(to.maker.make(frame));
+  to.draw(to.maker.make(frame), nullptr);
 }
 
 void Recorder::finish(const Trace& trace, const Items& summary, const std::string& state) {

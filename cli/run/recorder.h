@@ -29,7 +29,8 @@ struct RecorderOptions {
   // At most what the trace will hold besides frames, bytes: taken from the disk before the first step, so
   // that frames that fill it cost themselves alone.
   uint64_t rest = 0;
-  std::function<void(const Frame&)> see{};  // each frame, with axial strain
+  // Each frame, with axial strain; the state that it was made of, or null in real numbers.
+  std::function<void(const Frame&, const State*)> see{};
 };
 
 class Recorder {

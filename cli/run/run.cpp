@@ -12,6 +12,7 @@
 #include "cli/programs.h"
 #include "cli/run/engine_run.h"
 #include "cli/run/estimate.h"
+#include "cli/run/frame_feed.h"
 #include "cli/run/recorder.h"
 #include "cli/run/stages.h"
 #include "cli/run/summary.h"
@@ -145,7 +146,8 @@ Ended run_once(const RunOptions& given) {
   RunRequest request;
   request.steps = options.steps_given ? options.steps : scene.steps;
   uint64_t every = options.frames_given ? options.frame_every : scene.frame_every;
-  if (options.view && every == 0) every = std::max<uint64_t>(1, request.steps / kViewed);
+  if (every == 0 && (options.view || is_viewed(options.out)))
+    every = std::max<uint64_t>(1, request.steps / kViewed);
   check_size(options, loaded, request.steps, every);
   const Readings readings = readings_of(scene, request.steps);
   request.probes = every_so_often(readings.probes, request.steps);
@@ -160,6 +162,8 @@ Ended run_once(const RunOptions& given) {
   const std::string checkpoint = request.checkpoint.path;
   std::optional<Recorder> recorder;
   std::optional<LiveView> view;
+  const TraceHead head = head_of(loaded, real, false);
+  std::optional<FrameFeed> feed;  // until the directory is whole: its page then reads that
   if (!options.out.empty()) {
     request.frames = every_so_often(every, request.steps);
     RecorderOptions kept;
@@ -176,10 +180,12 @@ Ended run_once(const RunOptions& given) {
     kept.csv = options.csv;
     kept.cycles = counts_cycles(options);
     kept.rest = rest_of(options, loaded, request.steps, request.probes.size());
-    kept.see = [&](const Frame& frame) {
+    kept.see = [&](const Frame& frame, const State* state) {
       if (view) view->show(frame);
+      feed->show(frame, state);
     };
     recorder.emplace(std::move(kept), loaded);
+    feed.emplace(options.out, head, frame_style(scene), loaded.setup.plan.particles, options.engine);
     if (options.view) view.emplace(options.out, loaded, request.steps, options.opens);
     request.keep = [&](const RunState& frame) {
       std::visit([&](const auto& state) { recorder->keep(state); }, frame);
@@ -210,6 +216,7 @@ Ended run_once(const RunOptions& given) {
     if (!recorder->trouble().empty()) trouble = recorder->trouble();
   }
   if (view) view->end();
+  feed.reset();
   if (unfinished)
     fmt::print(stderr, "interrupted{}\n",
                run.left_checkpoint

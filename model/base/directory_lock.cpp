@@ -68,4 +68,12 @@ DirectoryLock::~DirectoryLock() {
   if (made_) rmdir(directory_.c_str());  // where it is empty
 }
 
+bool is_locked(const std::string& directory) {
+  const int file = open((directory + "/.lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool locked = flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(file);
+  return locked;
+}
+
 }  // namespace cuboct

@@ -22,4 +22,7 @@ class DirectoryLock {
   int file_ = -1;
 };
 
+// Whether a process holds the lock of a directory now.
+bool is_locked(const std::string& directory);
+
 }  // namespace cuboct

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "cli/run/frame_feed.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "model/base/interrupt.h"
+
+namespace cuboct {
+namespace {
+
+constexpr int kShare = 20;      // of the run's time, one part
+constexpr timeval kLong{2, 0};  // a page that takes nothing for so long is left
+
+// The address of a socket is at most 107 bytes: it goes through a descriptor of the directory.
+template <typename Use>
+int with_address(const std::string& directory, Use use) {
+  const int place = open(directory.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  if (place < 0) return -1;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = fmt::format("/proc/self/fd/{}/{}", place, kViewSocket);
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (made >= 0 && use(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    const int error = errno;
+    close(made);
+    made = -1;
+    errno = error;
+  }
+  const int error = errno;
+  close(place);
+  errno = error;
+  return made;
+}
+
+}  // namespace
+
+int connect_in(const std::string& directory) { return with_address(directory, connect); }
+
+int listen_in(const std::string& directory) {
+  return with_address(directory, [](int made, const sockaddr* address, socklen_t size) {
+    return bind(made, address, size) != 0 ? -1 : listen(made, 4);
+  });
+}
+
+bool is_viewed(const std::string& directory) {
+  const int page = directory.empty() ? -1 : connect_in(directory);
+  if (page >= 0) close(page);
+  return page >= 0;
+}
+
+bool is_own(int socket) {
+  ucred other{};
+  socklen_t size = sizeof other;
+  return getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &other, &size) == 0 && other.uid == geteuid();
+}
+
+FrameFeed::FrameFeed(std::string directory, const TraceHead& head, const FrameStyle& style, size_t particles,
+                     const std::string& engine)
+    : directory_(std::move(directory)), engine_(engine), form_(head, style, particles, particles) {}
+
+FrameFeed::~FrameFeed() { leave(); }
+
+void FrameFeed::leave() {
+  if (socket_ >= 0) close(socket_);
+  socket_ = -1;
+  paused_ = false;
+}
+
+// The head comes before the first frame.
+bool FrameFeed::begin() {
+  if (socket_ >= 0) return true;
+  socket_ = connect_in(directory_);
+  if (socket_ < 0) return false;
+  setsockopt(socket_, SOL_SOCKET, SO_SNDTIMEO, &kLong, sizeof kLong);
+  return is_own(socket_) && send(form_.head_json(engine_), {});
+}
+
+bool FrameFeed::send(const std::string& json, const std::vector<std::string>& blocks) {
+  const auto all = [&](const void* from, size_t bytes) {
+    const char* at = static_cast<const char*>(from);
+    while (bytes > 0) {
+      const ssize_t sent = ::send(socket_, at, bytes, MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) continue;
+      if (sent <= 0) return false;
+      at += sent, bytes -= static_cast<size_t>(sent);
+    }
+    return true;
+  };
+  const FeedSizes sizes{json.size(), blocks.size()};
+  bool whole = all(&sizes, sizeof sizes);
+  for (size_t k = 0; k < blocks.size(); ++k) {
+    const FeedBlock block{blocks[k].size(), form_.blocks()[k].row()};
+    whole = whole && all(&block, sizeof block);
+  }
+  whole = whole && all(json.data(), json.size());
+  for (const std::string& block : blocks) whole = whole && all(block.data(), block.size());
+  return whole;
+}
+
+// What the page has asked for since it was last heard. `waits`: for more, while it wants a pause.
+void FrameFeed::obey(bool waits) {
+  while (socket_ >= 0 && !interrupted()) {
+    pollfd from{socket_, POLLIN, 0};
+    const int there = poll(&from, 1, waits && paused_ ? -1 : 0);
+    if (there < 0 && errno == EINTR) continue;
+    if (there <= 0) return;
+    char word = 0;
+    if (recv(socket_, &word, 1, 0) <= 0) return leave();  // the page's program is gone: the run goes on
+    switch (static_cast<FeedWord>(word)) {
+      case FeedWord::pause:
+        paused_ = true;
+        break;
+      case FeedWord::go_on:
+        paused_ = false;
+        break;
+      case FeedWord::one_frame:
+        paused_ = true;
+        return;
+      case FeedWord::end:
+        raise(SIGINT);
+        return;
+    }
+  }
+}
+
+void FrameFeed::show(const Frame& frame, const State* state) {
+  obey(false);
+  if (!paused_ && Clock::now() < next_) return;
+  const auto began = Clock::now();
+  if (!begin()) return leave();
+  const ViewFrame made = form_.make(frame, state);
+  if (!send(made.json(), made.blocks)) return leave();
+  next_ = Clock::now() + (kShare - 1) * (Clock::now() - began);
+  obey(true);
+}
+
+}  // namespace cuboct
