@@ -28,6 +28,7 @@ void add_measure(Command& app, int& exit_code);
 void add_picture(Command& app, int& exit_code);
 void add_report(Command& app, int& exit_code);
 void add_state(Command& app, int& exit_code);
+void add_view(Command& app, int& exit_code);
 void add_multiscale(Command& app, int& exit_code);
 void add_pitch(Command& app, int& exit_code);
 void add_stability(Command& app, int& exit_code);

@@ -22,6 +22,7 @@ constexpr std::array kEntries{
     Entry{"run it", "measure", "cuboct measure out/melt rdf --out rdf.csv"},
     Entry{"run it", "state", "cuboct state out/coupon --out coupon.xyz"},
     Entry{"run it", "picture", "cuboct picture out/coupon --field speed"},
+    Entry{"run it", "view", "cuboct view out/coupon --save coupon.html"},
     Entry{"run it", "report", "cuboct report out/coupon"},
     Entry{"compare", "crosscheck", "cuboct crosscheck scenes/lj_block.toml --engines golden,lattice"},
     Entry{"compare", "bench", "cuboct bench lattice.block_32k"},

@@ -16,6 +16,9 @@ constexpr BuildPart kBondFits{"fits of Tersoff's potential",
                               "install NLopt (libnlopt-dev) and configure anew", CUBOCT_HAS_BOND_FITS};
 constexpr BuildPart kLearning{"studies and NLopt", "configure with -DCUBOCT_STUDIES=ON", CUBOCT_HAS_LEARNING};
 constexpr BuildPart kSynthesis{"synthesis", "configure with -DCUBOCT_SYNTH=ON", CUBOCT_HAS_SYNTH};
+constexpr BuildPart kView{"the page of a run",
+                          "install libmicrohttpd (libmicrohttpd-dev) and configure with -DCUBOCT_VIEW=ON",
+                          CUBOCT_HAS_VIEW};
 
 namespace {
 
@@ -41,6 +44,7 @@ constexpr CommandRow kCommands[] = {
     {"measure", "radial distribution, displacement, structure, stress of a run", kCore, nullptr},
     {"state", "write the end of a run as a file that a scene can start from", kCore, nullptr},
     {"picture", "draw the frames of a run's directory, of bodies of any size", kCore, nullptr},
+    {"view", "a run in 3D in a browser, while it goes and afterwards", "cuboct-view", &kView},
     {"report", "make one HTML file of a run's directory", kCore, nullptr},
 };
 

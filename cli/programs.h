@@ -16,7 +16,7 @@ struct BuildPart {
   std::string_view cure;  // the hint beside it
   bool built;
 };
-extern const BuildPart kStudies, kFits, kBondFits, kLearning, kSynthesis;
+extern const BuildPart kStudies, kFits, kBondFits, kLearning, kSynthesis, kView;
 
 // `asked`: the words that ask for it, as "emit --fit".
 [[noreturn]] void refuse_left_out(const std::string& asked, const BuildPart& part);

@@ -43,6 +43,7 @@ std::string version_text() {
   line("studies", part_text(kStudies, "cuboct-study"));
   line("fits", part_text(kFits, "cuboct-study"));
   line("synthesis", part_text(kSynthesis, "cuboct-machine"));
+  line("view", part_text(kView, "cuboct-view"));
   out.pop_back();  // CLI11 ends the line
   return out;
 }

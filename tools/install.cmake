@@ -2,7 +2,7 @@
 # the programs that need no more than a shell, and those that read strangers' files for them; DIR/lib every shared library
 # they load but glibc's, which comes with each system and must be its own.
 set(installed cuboct cuboct-study cuboct-machine cuboct-bench cuboct-read-trace)
-foreach(program cuboct-gpu cuboct-read-mesh)
+foreach(program cuboct-gpu cuboct-read-mesh cuboct-view)
   if(TARGET ${program})
     list(APPEND installed ${program})
   endif()

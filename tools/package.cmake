@@ -30,7 +30,7 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, verilator, yosys, nextpnr-ice40, openmpi-bin")
 
 set(parts cuboct cuboct-bench cuboct-board-sim cuboct-fpga cuboct-gpu cuboct-lattice cuboct-machine cuboct-read-mesh cuboct-read-trace cuboct-rtl
-  cuboct-study cuboct-systemc)
+  cuboct-study cuboct-systemc cuboct-view)
 set(home lib/cuboct)
 set(control ${PROJECT_BINARY_DIR}/debian)
 set(CPACK_DEBIAN_DEBIAN_PACKAGE_CONTROL_EXTRA "")

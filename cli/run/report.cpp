@@ -316,19 +316,6 @@ std::string table_of(const Items& items, const std::string& without = {}) {
   return out + "</table></div>\n";
 }
 
-// What the run did, from its trace alone.
-Items facts_of(const Loaded& loaded, const Trace& trace) {
-  Items items;
-  items.add("engine", trace.engine);
-  for (const auto& [name, text] : trace.notes) items.add(name, text);
-  items.add("steps", trace.steps());
-  items.add("simulated time", static_cast<double>(trace.steps()) * loaded.scene.rule.dt, "s");
-  items.add("host time", trace.seconds, "s");
-  add_curves(items, loaded.scene, trace.curves);
-  if (trace.asked) add_end(items, trace);
-  return items;
-}
-
 constexpr char kPageStyle[] =
     "body{font:16px/1.5 system-ui,sans-serif;color:#222;background:#fff;max-width:1100px;margin:2.5rem "
     "auto;padding:0 "

@@ -20,7 +20,10 @@ class Shots {
   Shots(const Loaded& loaded, const Trace& trace, const std::string& path);
   size_t size() const { return real_ ? trace_.bodies.size() : trace_.frames.size(); }
   uint64_t step(size_t k) const { return real_ ? trace_.bodies[k].step : trace_.frames[k].step; }
-  Frame frame(size_t k) const { return made(k, axial_); }  // with axial strain
+  Frame frame(size_t k) const { return made(k, axial_); }        // with axial strain
+  Frame whole_frame(size_t k) const { return made(k, whole_); }  // with all that a frame has
+  bool real() const { return real_; }
+  const State* state(size_t k) const { return real_ ? nullptr : &trace_.frames[k]; }
   // The first frame in which an initial neighbour is out of the law's reach, by halving: bonds that broke
   // stay broken, as a rule.
   std::optional<size_t> crack_onset() const;

@@ -123,6 +123,18 @@ void add_end(Items& items, const Trace& trace) {
   items.add("ended", trace.ended(), where);
 }
 
+Items facts_of(const Loaded& loaded, const Trace& trace) {
+  Items items;
+  items.add("engine", trace.engine);
+  for (const auto& [name, text] : trace.notes) items.add(name, text);
+  items.add("steps", trace.steps());
+  items.add("simulated time", static_cast<double>(trace.steps()) * loaded.scene.rule.dt, "s");
+  items.add("host time", trace.seconds, "s");
+  add_curves(items, loaded.scene, trace.curves);
+  if (trace.asked) add_end(items, trace);
+  return items;
+}
+
 std::vector<std::string> warnings_of(const Loaded& loaded, bool real) {
   std::vector<std::string> warnings = motion_warnings(loaded.scene);
   if (!real)

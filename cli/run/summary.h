@@ -29,6 +29,9 @@ std::vector<std::string> warnings_of(const Loaded& loaded, bool real);
 // "warning: ..." lines and the array "warnings". `before`: warnings_of, told before the run.
 void add_warnings(Items& items, const std::vector<std::string>& before, const std::vector<Finding>& findings);
 
+// What the run did, from its trace alone.
+Items facts_of(const Loaded& loaded, const Trace& trace);
+
 // `real`: of an engine in real numbers.
 Items summarise(const Loaded& loaded, const Recorded& run, bool real);
 

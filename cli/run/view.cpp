@@ -28,6 +28,11 @@ bool has_display() {
 
 }  // namespace
 
+bool open_in_browser(const std::string& address) {
+  return has_display() && in_path("xdg-open") && in_path("setsid") &&
+         Process("setsid", {"--fork", "xdg-open", address}, false, {"/dev/null", "/dev/null"}).wait() == 0;
+}
+
 template <typename Work>
 void LiveView::attempt(Work work) {
   if (failed_) return;
@@ -55,13 +60,9 @@ void LiveView::write(const std::string& body, int refresh) {
   write_text(path_, page_head(title_, refresh) + body + "</body>\n</html>\n");
 }
 
-// Apart from this process, which may end before its browser.
 void LiveView::open_page() const {
   const std::string page = std::filesystem::absolute(path_).lexically_normal().string();
-  if (has_display() && in_path("xdg-open") && in_path("setsid") &&
-      Process("setsid", {"--fork", "xdg-open", page}, false, {"/dev/null", "/dev/null"}).wait() == 0)
-    return;
-  fmt::print(stderr, "view: {}\n", line_text(page));
+  if (!open_in_browser(page)) fmt::print(stderr, "view: {}\n", line_text(page));
 }
 
 void LiveView::show(const Frame& frame) {

@@ -10,6 +10,10 @@
 
 namespace cuboct {
 
+// Opens a file or an address where there is a display, apart from this process, which may end before its
+// browser.
+bool open_in_browser(const std::string& address);
+
 // Nothing here ends a run: what goes wrong is told once on stderr, and the run goes on without a page.
 class LiveView {
  public:

@@ -4,7 +4,7 @@
 # usage: least.sh ROOT BUILD_DIRECTORY
 set -euo pipefail
 root=$1 build=$2
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCUBOCT_{CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF >/dev/null
+cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCUBOCT_{CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS,VIEW}=OFF >/dev/null
 ninja -C "$build" cuboct cuboct-machine cuboct-lattice >"$build/log" 2>&1 || { tail -n 50 "$build/log"; exit 1; }
 
 refuses() {  # TEXT ARGUMENT...
@@ -23,6 +23,8 @@ refuses "explore: $studies" explore
 refuses "stability: $studies" stability "$scene"
 refuses 'fit: this cuboct was built without fits
   hint: configure with -DCUBOCT_FITS=ON' fit study.toml
+refuses 'view: this cuboct was built without the page of a run
+  hint: install libmicrohttpd (libmicrohttpd-dev) and configure with -DCUBOCT_VIEW=ON' view "$build"
 refuses "synth: $synthesis" synth project --target up5k
 refuses "emit --fit: $synthesis" emit "$scene" --fit ecp5-85 --out "$build/project"
 [ ! -e "$build/project" ]
@@ -31,4 +33,4 @@ refuses '--ranks 2: the lattice engine was built without MPI
 refuses 'the systemc engine is not built: no program cuboct-systemc beside cuboct
   hint: install libsystemc-dev and build again; a directory of '\''cmake --install'\'' has no such engine' run "$scene" --steps 1 --engine systemc
 "$build/cuboct" crosscheck "$scene" --steps 2 --engines golden,lattice | grep -qx 'matched 512 updates over 2 steps in 2 engines'
-echo "nine refusals, and a run"
+echo "ten refusals, and a run"

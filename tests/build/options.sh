@@ -26,9 +26,9 @@ lacks() {
   local target
   for target; do if grep -qx "$target" "$work/targets"; then echo "there is a target $target"; exit 1; fi; done
 }
-parts=(_cuboct cuboct_library cuboct_fit cuboct_ranks cuboct_study cuboct_synth cuboct-systemc cuboct-rtl unit_tests)
+parts=(_cuboct cuboct_library cuboct_fit cuboct_ranks cuboct_study cuboct_synth cuboct-view cuboct-systemc cuboct-rtl unit_tests)
 
-configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS}=OFF
+configure "$root" -DCUBOCT_{CCACHE,MOLD,CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS,VIEW}=OFF
 says "The gpu engine: without its program cuboct-gpu, as this build has sanitizers or CUBOCT_CUDA is OFF"
 says "The lattice engine: on one rank alone, as CUBOCT_MPI is OFF"
 says "Python: left out, as CUBOCT_PYTHON is OFF"
@@ -36,6 +36,7 @@ says "The C++ library: left out, as this build has sanitizers or CUBOCT_LIBRARY 
 says "Studies: left out, as CUBOCT_STUDIES is OFF"
 says "Fits: left out, as CUBOCT_FITS is OFF"
 says "Synthesis: left out, as CUBOCT_SYNTH is OFF"
+says "View: left out, as CUBOCT_VIEW is OFF"
 says "The systemc and rtl engines: without their programs, as CUBOCT_SYSTEMC is OFF"
 says "Tests: left out, as CUBOCT_TESTS is OFF"
 has cuboct cuboct-{bench,lattice,machine,study}
@@ -58,6 +59,7 @@ says "The lattice engine: on one rank alone, as MPI (libopenmpi-dev) is not foun
 says "Python: left out, as Python 3.11 (python3-dev) or pybind11 (pybind11-dev) is not found"
 says "Studies: left out, as SQLite (libsqlite3-dev) is not found"
 says "Fits: left out, as studies are"
+says "View: left out, as libmicrohttpd (libmicrohttpd-dev) is not found"
 says "The systemc and rtl engines: without their programs, as SystemC (libsystemc-dev) is not found"
 says "Tests: left out, as GoogleTest (libgtest-dev) is not found"
 says "The pages as HTML: without the target docs, as mkdocs (Debian package mkdocs) is not found"

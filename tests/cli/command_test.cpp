@@ -50,7 +50,8 @@ TEST(Command, TellsItsVersionAndTheEnginesBesideIt) {
                                                       "reference  built in\n"
                                                       "studies    (built in|left out)\n"
                                                       "fits       (built in|left out)\n"
-                                                      "synthesis  (built in|left out)\n")))
+                                                      "synthesis  (built in|left out)\n"
+                                                      "view       (built in|left out)\n")))
       << answer.out;
 }
 

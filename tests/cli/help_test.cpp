@@ -42,7 +42,7 @@ TEST(Help, OfAllIsInGroupsWithAnExampleEach) {
   for (const char* group : {"make a scene", "run it", "compare", "make the hardware", "study settings"})
     EXPECT_NE(answer.out.find(std::string("\n") + group + ":\n"), std::string::npos) << group;
   const Strings names = commands(bench);
-  ASSERT_EQ(names.size(), 21u);
+  ASSERT_EQ(names.size(), 22u);
   for (const std::string& name : names) {
     EXPECT_NE(answer.out.find("\n  " + name + " "), std::string::npos) << name;
     EXPECT_NE(answer.out.find("\n                cuboct " + name + " "), std::string::npos) << name;

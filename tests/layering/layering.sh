@@ -48,6 +48,7 @@ declare -A may=(
   [cli/run]="model hw emu/lattice cli/."
   [cli/machine]="model hw synth emu/lattice emu/timing cli/. cli/run"
   [cli/study]="model hw synth emu/lattice emu/timing study cli/. cli/run cli/machine"
+  [cli/view]="model hw cli/. cli/run"
   [cli/bench]="model hw study/bench cli/."
   [python]="model hw emu/lattice study cli"
   [library]="model hw emu/lattice cli python"

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "cli/view/live_run.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include "cli/run/frame_feed.h"
+#include "model/base/error.h"
+#include "model/base/json.h"
+#include "model/base/output.h"
+#include "model/base/text.h"
+
+namespace cuboct {
+namespace {
+
+constexpr uint64_t kMostJson = 1 << 26, kMostBlocks = 1000, kMostBytes = uint64_t{1} << 36;
+
+bool receive(int from, void* to, size_t bytes) {
+  char* at = static_cast<char*>(to);
+  while (bytes > 0) {
+    const ssize_t got = recv(from, at, bytes, 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    at += got, bytes -= static_cast<size_t>(got);
+  }
+  return true;
+}
+
+// In the directory of the run, as nothing else is written to.
+int unnamed_file(const std::string& directory) {
+  int file = open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file < 0) {  // a file system that has none
+    const std::string name = temporary_beside(directory + "/.view.frames");
+    file = open(name.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (file >= 0) unlink(name.c_str());
+  }
+  if (file < 0)
+    throw InputError(fmt::format("cannot write into the directory {}: {}", directory, std::strerror(errno)));
+  return file;
+}
+
+std::string socket_path(const std::string& directory) { return directory + "/" + kViewSocket; }
+
+}  // namespace
+
+LiveRun::LiveRun(std::string directory, std::string log)
+    : directory_(std::move(directory)), log_(std::move(log)) {
+  if (const int other = connect_in(directory_); other >= 0) {
+    close(other);
+    throw InputError(fmt::format("another cuboct view follows {}", directory_), "its page shows the run");
+  }
+  unlink(socket_path(directory_).c_str());  // of one that was killed
+  spool_ = unnamed_file(directory_);
+  listener_ = listen_in(directory_);
+  wake_ = eventfd(0, EFD_CLOEXEC);
+  if (listener_ < 0 || wake_ < 0) {
+    const int error = errno;
+    close(spool_);
+    throw InputError(fmt::format("cannot listen in {}: {}", directory_, std::strerror(error)));
+  }
+  thread_ = std::thread([this] { listen(); });
+}
+
+LiveRun::~LiveRun() {
+  const uint64_t one = 1;
+  if (write(wake_, &one, sizeof one) < 0) return;  // cannot be: nobody else counts it up
+  {
+    const std::lock_guard lock(guard_);
+    if (run_ >= 0) shutdown(run_, SHUT_RDWR);
+  }
+  thread_.join();
+  unlink(socket_path(directory_).c_str());
+  for (const int file : {listener_, spool_, wake_}) close(file);
+}
+
+bool LiveRun::is_over() const {
+  const std::lock_guard lock(guard_);
+  return state_ == "ended";
+}
+
+bool LiveRun::has_frames() const {
+  const std::lock_guard lock(guard_);
+  return !frames_.empty();
+}
+
+void LiveRun::listen() {
+  for (;;) {
+    pollfd from[] = {{listener_, POLLIN, 0}, {wake_, POLLIN, 0}};
+    if (poll(from, 2, -1) < 0 && errno != EINTR) return;
+    if (from[1].revents != 0) return;
+    if (from[0].revents == 0) continue;
+    const int run = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    if (run < 0) continue;
+    if (is_own(run)) take(run);
+    close(run);
+  }
+}
+
+void LiveRun::take(int run) {
+  {
+    const std::lock_guard lock(guard_);
+    run_ = run;
+    state_ = "running";
+  }
+  try {
+    while (take_message(run)) continue;
+  } catch (const std::exception& error) {  // a full disk: what came stays, the run goes on
+    const std::lock_guard lock(guard_);
+    lines_.push_back(fmt::format("no more frames: {}", line_text(error.what())));
+  }
+  const std::lock_guard lock(guard_);
+  run_ = -1;
+  state_ = frames_.empty() ? "waiting" : "ended";  // who only looked whether somebody listens sent none
+}
+
+bool LiveRun::take_message(int run) {
+  FeedSizes sizes;
+  if (!receive(run, &sizes, sizeof sizes) || sizes.json > kMostJson || sizes.blocks > kMostBlocks)
+    return false;
+  std::vector<FeedBlock> blocks(sizes.blocks);
+  if (!receive(run, blocks.data(), blocks.size() * sizeof(FeedBlock))) return false;
+  Kept kept;
+  kept.json.resize(sizes.json);
+  if (!receive(run, kept.json.data(), kept.json.size())) return false;
+  std::string bytes;
+  for (const FeedBlock& block : blocks) {
+    if (block.bytes > kMostBytes || block.row == 0) return false;
+    bytes.resize(block.bytes);
+    if (!receive(run, bytes.data(), bytes.size())) return false;
+    for (size_t done = 0; done < bytes.size();) {
+      const ssize_t wrote =
+          pwrite(spool_, bytes.data() + done, bytes.size() - done, end_ + static_cast<off_t>(done));
+      if (wrote <= 0) throw std::runtime_error(std::strerror(errno));
+      done += static_cast<size_t>(wrote);
+    }
+    kept.blocks.push_back({end_, bytes.size(), block.row});
+    end_ += static_cast<off_t>(bytes.size());
+  }
+  const std::lock_guard lock(guard_);
+  if (blocks.empty())
+    head_ = std::move(kept.json);
+  else
+    frames_.push_back(std::move(kept));
+  return true;
+}
+
+void LiveRun::read_log() {
+  if (log_.empty()) return;
+  const int file = open(log_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  std::string text;
+  char piece[1 << 14];
+  for (ssize_t got;
+       (got = pread(file, piece, sizeof piece, log_read_ + static_cast<off_t>(text.size()))) > 0;)
+    text.append(piece, static_cast<size_t>(got));
+  close(file);
+  const size_t whole = text.rfind('\n');  // a line that is still being written comes later
+  if (whole == std::string::npos) return;
+  for (size_t from = 0; from <= whole;) {
+    const size_t to = text.find('\n', from);
+    lines_.push_back(line_text(text.substr(from, to - from)));
+    from = to + 1;
+  }
+  log_read_ += static_cast<off_t>(whole + 1);
+}
+
+std::string LiveRun::story() {
+  const std::lock_guard lock(guard_);
+  read_log();
+  Story story{head_.empty() ? "null" : head_, {}};
+  for (const Kept& frame : frames_) story.frames.push_back(frame.json);
+  story.lines = lines_;
+  story.live = story.may_end = true;
+  return story.json();
+}
+
+std::string LiveRun::news(size_t frames, size_t lines) {
+  const std::lock_guard lock(guard_);
+  read_log();
+  std::vector<std::string> fresh, told;
+  for (size_t k = std::min(frames, frames_.size()); k < frames_.size(); ++k) fresh.push_back(frames_[k].json);
+  for (size_t k = std::min(lines, lines_.size()); k < lines_.size(); ++k) told.push_back(lines_[k]);
+  return json_object({{"frames", json_array(fresh)},
+                      {"lines", json(told)},
+                      {"state", json(state_)},
+                      {"whole", json(false)}});
+}
+
+Bytes LiveRun::block(size_t frame, size_t block, std::optional<size_t> row) {
+  Kept::Place place{};
+  {
+    const std::lock_guard lock(guard_);
+    if (frame >= frames_.size() || block >= frames_[frame].blocks.size()) return nullptr;
+    place = frames_[frame].blocks[block];
+  }
+  if (row) {
+    if (*row >= place.bytes / place.row) return nullptr;
+    place.at += static_cast<off_t>(*row * place.row);
+    place.bytes = place.row;
+  }
+  std::string bytes(place.bytes, '\0');
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t got =
+        pread(spool_, bytes.data() + done, bytes.size() - done, place.at + static_cast<off_t>(done));
+    if (got <= 0) throw std::runtime_error("a frame cannot be read back");
+    done += static_cast<size_t>(got);
+  }
+  return std::make_shared<const std::string>(std::move(bytes));
+}
+
+bool LiveRun::command(const std::string& word) {
+  constexpr std::pair<const char*, FeedWord> kWords[] = {{"pause", FeedWord::pause},
+                                                         {"continue", FeedWord::go_on},
+                                                         {"step", FeedWord::one_frame},
+                                                         {"end", FeedWord::end}};
+  const auto* known = std::ranges::find(kWords, word, [](const auto& one) { return std::string(one.first); });
+  if (known == std::end(kWords)) return false;
+  const std::lock_guard lock(guard_);
+  const char byte = static_cast<char>(known->second);
+  if (run_ < 0 || ::send(run_, &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT) != 1) return false;
+  if (known->second == FeedWord::pause || known->second == FeedWord::one_frame) state_ = "paused";
+  if (known->second == FeedWord::go_on) state_ = "running";
+  return true;
+}
+
+}  // namespace cuboct

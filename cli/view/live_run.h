@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// A run that goes: its frames as they come from its own process (cli/run/frame_feed.h).
+#pragma once
+
+#include <sys/types.h>
+
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "cli/view/source.h"
+
+namespace cuboct {
+
+class LiveRun : public ViewSource {
+ public:
+  // Listens in the run's directory, which is there. `log`: the file of the run's stderr; empty: not known.
+  // InputError where another page listens there.
+  LiveRun(std::string directory, std::string log);
+  ~LiveRun() override;
+
+  // The run has come, and has gone.
+  bool is_over() const;
+  bool has_frames() const;
+
+  std::string story() override;
+  std::string news(size_t frames, size_t lines) override;
+  Bytes block(size_t frame, size_t block, std::optional<size_t> row) override;
+  bool command(const std::string& word) override;
+
+ private:
+  struct Kept {
+    struct Place {
+      off_t at;
+      size_t bytes, row;
+    };
+    std::string json;
+    std::vector<Place> blocks;
+  };
+  void listen();
+  void take(int run);
+  bool take_message(int run);
+  void read_log();
+
+  std::string directory_, log_;
+  int listener_ = -1, spool_ = -1, wake_ = -1;  // spool: the blocks of all frames, a file without a name
+  off_t end_ = 0;
+  std::thread thread_;
+
+  mutable std::mutex guard_;  // of what follows
+  int run_ = -1;
+  std::string head_, state_ = "waiting";
+  std::vector<Kept> frames_;
+  std::vector<std::string> lines_;
+  off_t log_read_ = 0;
+};
+
+}  // namespace cuboct

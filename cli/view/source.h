@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// What a page of a run shows, stored or live. Members may be called from several threads at a time.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/trace/trace.h"
+
+namespace cuboct {
+
+// What a page begins with, less the frames' blocks; cli/view/web/main.js reads it.
+struct Story {
+  std::string head;                 // ViewFrames::head_json
+  std::vector<std::string> frames;  // ViewFrame::json of each
+  std::vector<Curve> curves{};
+  std::vector<std::string> warnings{}, lines{};              // lines: of the run's log
+  std::vector<std::pair<std::string, std::string>> facts{};  // name and text
+  std::string left_out{};                                    // frames that are not there, in words
+  bool live = false, may_end = false;                        // may_end: the run can be ended from the page
+  std::string json() const;
+};
+
+using Bytes = std::shared_ptr<const std::string>;
+
+class ViewSource {
+ public:
+  virtual ~ViewSource() = default;
+  virtual std::string story() = 0;  // JSON
+  // JSON: entries of frames and lines beyond those that the page has, and how the run goes.
+  virtual std::string news(size_t frames, size_t lines) = 0;
+  // A block of a frame, or the row of one particle; null where there is none.
+  virtual Bytes block(size_t frame, size_t block, std::optional<size_t> row) = 0;
+  virtual bool command(const std::string& word) = 0;  // false: nothing here follows it
+};
+
+// One row of a block.
+Bytes row_of(const std::string& block, size_t bytes, size_t row);
+
+}  // namespace cuboct

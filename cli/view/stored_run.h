@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// The frames, curves and warnings of a run that a directory holds.
+#pragma once
+
+#include <deque>
+#include <mutex>
+#include <string>
+
+#include "cli/run/outputs.h"
+#include "cli/run/report_pictures.h"
+#include "cli/view/source.h"
+#include "model/trace/view_frame.h"
+
+namespace cuboct {
+
+class StoredRun : public ViewSource {
+ public:
+  // `every`: keeps each so-manieth frame, and the last. `particles`: at most so many of each. InputError
+  // where the directory holds no run that is over.
+  StoredRun(const std::string& directory, size_t every, size_t particles);
+
+  std::string title() const;
+  std::string left_out() const;  // of the frames; empty: none
+  Story tell() const;            // without the frames
+  size_t frames() const { return chosen_.size(); }
+  size_t particles() const { return loaded_.setup.plan.particles; }
+  const ViewFrames& form() const { return form_; }
+  ViewFrame frame(size_t k) const;
+
+  std::string story() override;
+  std::string news(size_t, size_t) override;
+  Bytes block(size_t frame, size_t block, std::optional<size_t> row) override;
+  bool command(const std::string&) override { return false; }
+
+ private:
+  Frame bare_frame(size_t k) const;  // places and velocities, of a frame of the trace
+  std::shared_ptr<const ViewFrame> kept(size_t k);
+
+  RunRecord record_;
+  Trace trace_;
+  Loaded loaded_;
+  Shots shots_;
+  TraceHead head_;
+  ViewFrames form_;
+  std::vector<size_t> chosen_;  // of the trace's frames
+  std::mutex guard_;            // of `made_`, and of making: a strain meter is built by the first frame
+  std::deque<std::pair<size_t, std::shared_ptr<const ViewFrame>>>
+      made_;  // the last few, as a page asks for each block by itself
+};
+
+}  // namespace cuboct

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// `cuboct view`: a run in a browser.
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "cli/answer.h"
+#include "cli/command.h"
+#include "cli/programs.h"
+#include "cli/run/engine_options.h"
+#include "cli/run/stages.h"
+#include "cli/view/saved_page.h"
+#include "cli/view/watch_run.h"
+#include "hw/engine/engines.h"
+#include "hw/program/options.h"
+#include "model/base/json.h"
+#include "model/base/output.h"
+#include "model/base/process.h"
+#include "model/base/text.h"
+
+namespace cuboct {
+namespace {
+
+struct ViewOptions {
+  std::string what, save;
+  uint64_t every = 1, particles = std::numeric_limits<uint32_t>::max(), limit = 100;
+  uint32_t port = 0;
+  bool no_open = false;
+  // Of a run that is started.
+  std::string arch, engine, out, steps, frame_every;
+  bool force = false;
+  Answer answer;
+};
+
+void save(const ViewOptions& options) {
+  check_writable(options.save);
+  const StoredRun run(options.what, options.every, options.particles);
+  const std::string page = saved_page(run, options.limit * 1000000);
+  write_text(options.save, page);
+  const std::string left = run.left_out();
+  const size_t shown = run.form().shown();
+  options.answer.say("{}\n  {:<10} {}{}\n  {:<10} {}{}\n  {:<10} {:.3g} MB\n", line_text(options.save),
+                     "frames", run.frames(), left.empty() ? "" : " " + left, "particles", shown,
+                     shown < run.particles() ? fmt::format(" of {}", run.particles()) : "", "size",
+                     1e-6 * static_cast<double>(page.size()));
+  options.answer.close(json_object({{"file", json(options.save)},
+                                    {"frames", std::to_string(run.frames())},
+                                    {"particles", std::to_string(shown)},
+                                    {"bytes", std::to_string(page.size())}}));
+}
+
+// The command line of `cuboct run`.
+std::vector<std::string> run_words(const ViewOptions& options, const std::string& out) {
+  std::vector<std::string> words{"run", options.what, "--out", out};
+  for (const auto& [name, value] : {std::pair{"--arch", options.arch},
+                                    {"--engine", options.engine},
+                                    {"--steps", options.steps},
+                                    {"--frame-every", options.frame_every}})
+    if (!value.empty()) words.emplace_back(name), words.push_back(value);
+  if (options.force) words.emplace_back("--force");
+  return words;
+}
+
+int view(const ViewOptions& options) {
+  if (!has_view_page())
+    throw InputError("this cuboct was built without the page of a run: cli/view/web/node_modules was missing",
+                     "run tools/setup, or npm ci --ignore-scripts in cli/view/web, and build anew");
+  const bool directory = std::filesystem::is_directory(options.what);
+  const auto of_scene = [&](bool given, const char* option) {
+    if (given && directory)
+      throw InputError(
+          fmt::format("{} is of a run that is started, and {} is a directory", option, options.what),
+          "cuboct view SCENE starts one");
+  };
+  for (const auto& [option, value] : {std::pair{"--arch", &options.arch},
+                                      {"--engine", &options.engine},
+                                      {"--steps", &options.steps},
+                                      {"--frame-every", &options.frame_every},
+                                      {"--out", &options.out}})
+    of_scene(!value->empty(), option);
+  of_scene(options.force, "--force");
+  if (!options.save.empty()) {
+    if (!directory)
+      throw InputError(
+          fmt::format("--save is of a run that is over, and {} is no directory", options.what),
+          fmt::format("cuboct run {} --out DIR, then cuboct view DIR --save {}", options.what, options.save));
+    save(options);
+    return 0;
+  }
+  WatchAsked asked{options.what,     options.every, options.particles, static_cast<uint16_t>(options.port),
+                   !options.no_open, options.answer};
+  if (directory) return watch_directory(asked);
+  if (const std::vector<StageName> stages = stages_of(options.what); !stages.empty())
+    throw InputError(fmt::format("{} is a scene of stages, each with a directory of its own", options.what),
+                     fmt::format("cuboct run {} --out DIR, and meanwhile cuboct view DIR/{}", options.what,
+                                 stage_title(stages, 0)));
+  std::optional<Scratch> scratch;
+  asked.directory = options.out;
+  if (options.out.empty()) asked.directory = scratch.emplace().path("run");
+  std::vector<std::string> words = run_words(options, asked.directory);
+  if (options.out.empty()) words.insert(words.end(), {"--frames", "none"});  // which nobody could read
+  return watch_run(asked, words);
+}
+
+}  // namespace
+
+void add_view(Command& app, int& exit_code) {
+  auto options = std::make_shared<ViewOptions>();
+  Command command = add_command(app, "view");
+  command.option("run", options->what, "a scene to run, or what 'cuboct run --out' wrote or writes")
+      .required()
+      .type_name("SCENE|DIR");
+  command
+      .option("--save", options->save,
+              "write the page as one file that needs no server and no network; of a DIR")
+      .type_name("FILE.html");
+  command
+      .option("--every", options->every,
+              "keep each N-th frame of those that the run kept, and the last; default: all")
+      .range(uint64_t{1}, uint64_t{1} << 40)
+      .type_name("N");
+  command
+      .option("--particles", options->particles,
+              "at most N particles of each frame, spread evenly over the ids; default: all")
+      .range(uint64_t{1}, uint64_t{1} << 32)
+      .type_name("N");
+  command.option("--limit", options->limit, "MB that a saved page may have")
+      .range(uint64_t{1}, uint64_t{2000})
+      .show_default()
+      .type_name("MB");
+  command.option("--port", options->port, "port of 127.0.0.1; default: a free one")
+      .range(0u, 65535u)
+      .type_name("N");
+  command.flag("--no-open", options->no_open, "print the address, and open no browser");
+  command.option("--arch", options->arch, "of a SCENE: arch file (TOML); default: the defaults")
+      .type_name("FILE");
+  command.option("--engine", options->engine, "of a SCENE: the engine of its run, as of 'cuboct run'")
+      .proposed(engines_that([](auto&) { return true; }));
+  command.option("--steps", options->steps, "of a SCENE: steps; default: the scene's")
+      .check(whole_number)
+      .type_name("N");
+  command
+      .option("--frame-every", options->frame_every,
+              "of a SCENE: a frame every K steps; default: the scene's, or 40 in all")
+      .check(whole_number)
+      .type_name("K");
+  command
+      .option("--out", options->out,
+              "of a SCENE: keep the run in this directory; default: it goes with the page")
+      .type_name("DIR");
+  command.flag("--force", options->force,
+               "of a SCENE: begin anew in a DIR whose run did not end, in its place");
+  options->answer.add_to(command);
+  command.callback([options, &exit_code] { exit_code = view(*options); });
+}
+
+}  // namespace cuboct

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// A server that shows a run until Ctrl-C: one that is over, one of another process, or one that it starts.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/answer.h"
+
+namespace cuboct {
+
+struct WatchAsked {
+  std::string directory;              // of the run
+  uint64_t every = 1, particles = 1;  // StoredRun
+  uint16_t port = 0;
+  bool opens = true;  // in a browser, where there is a display
+  Answer answer;
+};
+
+// The exit code.
+int watch_directory(const WatchAsked& asked);
+// Starts `cuboct run` with these words, which is to leave its run in the directory. The exit code is that of
+// the run, if it failed before its first step.
+int watch_run(const WatchAsked& asked, const std::vector<std::string>& words);
+
+}  // namespace cuboct

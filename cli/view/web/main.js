@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: MIT
+// Puts the page together: frames, colours, time line, cut, picking, and the run while it goes.
+import {SavedFrames, ServedFrames, array_of} from "./blocks.js";
+import {tell_particle} from "./chosen.js";
+import {gradient_of, kTypes, range_of, table_of, table_of_types} from "./colours.js";
+import {charts_of} from "./curves.js";
+import {by_id, element, number, with_unit} from "./format.js";
+import {follow} from "./live.js";
+import {Stage} from "./stage.js";
+
+const embedded = JSON.parse(by_id("story").textContent);
+const source = embedded.served ? new ServedFrames(embedded) : new SavedFrames(embedded);
+
+class Page {
+  constructor(story) {
+    this.story = story;
+    this.frame = -1;
+    this.chosen = -1;
+    this.held = null;
+    this.charts = [];
+  }
+
+  // What colours can be of: each field, of a vector its length and its parts.
+  choices() {
+    const {blocks, types} = this.story.head, found = [];
+    blocks.forEach((form, block) => {
+      if (!form.field) return;
+      const name = form.name.replaceAll("_", " ");
+      if (form.components.length === 3) found.push({name: form.name === "velocity" ? "speed" : name, block, part: -1, unit: form.unit});
+      if (!form.components.length) found.push({name, block, part: 0, unit: form.unit});
+      form.components.forEach((part, k) => found.push({name: `${name} ${part}`, block, part: k, unit: form.unit}));
+    });
+    if (types.length > 1) found.push({name: "type", block: this.story.head.type, part: -2, unit: ""});
+    return found;
+  }
+
+  begin() {
+    const {head} = this.story;
+    by_id("title").textContent = head.title;
+    document.title = head.title;
+    by_id("lead").textContent = this.lead();
+    this.colours = this.choices();
+    this.colours.forEach(({name}, k) => by_id("colour").append(new Option(name, String(k))));
+    const first = this.colours.findIndex(({name}) => name === head.colour);
+    by_id("colour").value = String(Math.max(0, first));
+    for (const axis of ["", "x", "y", "z"]) by_id("cut-axis").append(new Option(axis || "no cut", axis));
+    this.tell_lists();
+    this.charts = charts_of(this.story, by_id("curves"));
+    by_id("curves-none").hidden = this.charts.length > 0;
+    this.listen();
+  }
+  lead() {
+    const {head, frames, left_out} = this.story;
+    const shown = head.shown < head.particles ? `, of which ${head.shown} are shown` : "";
+    return `${head.particles} particles${shown}, ${head.engine} engine, ${frames.length} frames${left_out ? ` (${left_out})` : ""}`;
+  }
+  tell_lists() {
+    const {warnings, facts, lines} = this.story;
+    by_id("warnings").replaceChildren(...warnings.map((text) => element("li", text)));
+    by_id("warnings-part").hidden = warnings.length === 0;
+    by_id("facts").replaceChildren(...facts.flatMap(([name, text]) => [element("dt", name), element("dd", text)]));
+    by_id("facts-part").hidden = facts.length === 0;
+    by_id("log").textContent = lines.join("\n");
+    by_id("log-part").hidden = lines.length === 0;
+  }
+
+  listen() {
+    const on = (id, event, work) => by_id(id).addEventListener(event, () => this.attempt(work));
+    on("time", "input", () => this.show(Number(by_id("time").value)));
+    on("back", "click", () => this.show(Math.max(0, this.frame - 1)));
+    on("next", "click", () => this.show(Math.min(this.story.frames.length - 1, this.frame + 1)));
+    on("play", "click", () => this.play());
+    on("colour", "change", () => { this.held = null; by_id("hold").checked = false; return this.recolour(); });
+    on("hold", "change", () => { this.held = by_id("hold").checked ? this.range : null; return this.recolour(); });
+    for (const id of ["cut-axis", "cut-at", "cut-turn"]) on(id, "input", () => this.cut());
+    document.querySelectorAll("#looks button").forEach((button) =>
+      button.addEventListener("click", () => this.stage?.look(button.dataset.look)));
+    on("picture", "click", async () => save(await this.stage.picture(), `frame_${this.story.frames[this.frame].step}.png`));
+    const canvas = by_id("canvas");
+    let pressed = null;
+    canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+    canvas.addEventListener("pointerup", (event) => {
+      if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
+      const box = canvas.getBoundingClientRect();
+      this.attempt(() => this.choose(this.stage.pick(event.clientX - box.left, event.clientY - box.top)));
+    });
+    document.addEventListener("keydown", (event) => {
+      if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
+      const key = {ArrowLeft: "back", ArrowRight: "next", " ": "play"}[event.key];
+      if (key) event.preventDefault(), by_id(key).click();
+    });
+  }
+  async attempt(work) {
+    try {
+      await work();
+    } catch (error) {
+      by_id("problem").textContent = String(error.message || error);
+      by_id("problem").hidden = false;
+    }
+  }
+
+  // Shows a frame. Of those asked for while another is being fetched, the last is shown alone.
+  async show(frame) {
+    this.wanted = frame;
+    if (this.busy) return this.busy;
+    this.busy = (async () => {
+      while (this.wanted !== this.frame && this.wanted >= 0) await this.fetch_frame(this.wanted);
+    })().finally(() => { this.busy = null; });
+    return this.busy;
+  }
+  async fetch_frame(frame) {
+    const {head, frames} = this.story, {lower, extent} = frames[frame];
+    const places = array_of(head.blocks[0], await source.block(frame, 0));
+    if (!this.stage) {
+      this.stage = new Stage(by_id("canvas"), head, {lower, extent});
+      this.cut();
+    }
+    this.stage.show(places, {lower, extent});
+    this.frame = frame;
+    await this.recolour();
+    await this.tell_chosen();
+    const {step, time} = frames[frame];
+    by_id("time").max = String(frames.length - 1);
+    by_id("time").value = String(frame);
+    by_id("now").textContent = `frame ${frame + 1} of ${frames.length}, step ${step}${head.static ? "" : ", " + with_unit(time, head.reduced ? "" : "s", 5)}`;
+    for (const chart of this.charts) chart.at(step);
+    ++this.shown_count;
+    this.stage.draw();
+  }
+  shown_count = 0;
+
+  async recolour() {
+    const choice = this.colours[Number(by_id("colour").value)], {head} = this.story, form = head.blocks[choice.block];
+    const all = array_of(form, await source.block(this.frame, choice.block));
+    const values = new Float32Array(all.length / form.numbers);
+    if (choice.part === -2) return this.colour_types(all, values);
+    for (let k = 0; k < values.length; ++k)
+      values[k] = choice.part >= 0 ? all[k * form.numbers + choice.part] : Math.hypot(all[3 * k], all[3 * k + 1], all[3 * k + 2]);
+    this.range = this.held || range_of(values);
+    const kind = this.range.signed ? "diverging" : "viridis";
+    this.stage.cloud.table(table_of(kind), true);
+    this.stage.cloud.colour(values, this.range.low, this.range.high);
+    by_id("legend-bar").style.background = gradient_of(kind);
+    by_id("legend").hidden = false;
+    by_id("types").hidden = true;
+    by_id("legend-low").textContent = number(this.range.low);
+    by_id("legend-high").textContent = with_unit(this.range.high, choice.unit);
+    by_id("legend-name").textContent = choice.name + (this.range.empty ? ": not known" : "");
+    this.stage.draw();
+  }
+  colour_types(all, values) {
+    const {types} = this.story.head;
+    values.set(all);
+    for (let k = 0; k < values.length; ++k) values[k] += 0.5;
+    this.range = {low: 0, high: types.length, signed: false};
+    this.stage.cloud.table(table_of_types(types.length), false);
+    this.stage.cloud.colour(values, 0, types.length);
+    by_id("legend").hidden = true;
+    by_id("types").hidden = false;
+    by_id("types").replaceChildren(...types.map(({material, constraint}, k) => {
+      const entry = element("li", material + (constraint ? ", " + constraint : "")), dot = element("span", "", "dot");
+      dot.style.background = kTypes[k % kTypes.length];
+      entry.prepend(dot);
+      return entry;
+    }));
+    this.stage.draw();
+  }
+  cut() {
+    const axis = by_id("cut-axis").value;
+    by_id("cut-at").disabled = by_id("cut-turn").disabled = !axis;
+    this.stage.cut(axis, Number(by_id("cut-at").value), by_id("cut-turn").checked);
+    this.stage.draw();
+  }
+
+  async choose(place) {
+    this.chosen = place;
+    this.stage.choose(place);
+    await this.tell_chosen();
+  }
+  async tell_chosen() {
+    by_id("chosen-part").hidden = this.chosen < 0;
+    by_id("chosen-none").hidden = this.chosen >= 0;
+    if (this.chosen < 0) return;
+    const {frame, chosen} = this, still = () => frame === this.frame && chosen === this.chosen;
+    this.exact = (await tell_particle(source, this.story, frame, chosen, this.id_of(chosen), by_id("chosen"), still)) || this.exact;
+  }
+  // Where a part is shown, it is every so-manieth particle.
+  id_of(place) {
+    const {particles, shown} = this.story.head;
+    return Math.floor((place * particles) / shown);
+  }
+
+  play() {
+    this.playing = !this.playing;
+    by_id("play").textContent = this.playing ? "stop" : "play";
+    const next = async () => {
+      if (!this.playing) return;
+      const last = this.story.frames.length - 1;
+      if (this.frame >= last && !this.story.live) {
+        this.playing = false;
+        by_id("play").textContent = "play";
+        return;
+      }
+      const began = performance.now();
+      if (this.frame < last) await this.show(this.frame + 1);
+      setTimeout(() => this.attempt(next), Math.max(0, 1000 / 15 - (performance.now() - began)));
+    };
+    if (this.playing && this.frame >= this.story.frames.length - 1 && !this.story.live) this.attempt(async () => { await this.show(0); await next(); });
+    else if (this.playing) this.attempt(next);
+  }
+}
+
+function save(blob, name) {
+  const link = element("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
+async function start() {
+  let story = embedded;
+  while (embedded.served && !story.head) {
+    story = await (await source.ask("story")).json();
+    if (story.head) break;
+    by_id("ready").textContent = "the run has no frame yet";
+    await new Promise((done) => setTimeout(done, 300));
+  }
+  source.story = story;
+  source.live = story.live;
+  const page = new Page(story);
+  globalThis.cuboct = {page, source, story};
+  await page.attempt(async () => {
+    page.begin();
+    if (story.live) follow(page, source);
+    if (story.frames.length > 0) await page.show(story.live ? story.frames.length - 1 : 0);
+    else by_id("now").textContent = story.live ? "no frame yet" : "the run kept no frames";
+    by_id("ready").hidden = true;
+  });
+}
+start().catch((error) => { by_id("ready").textContent = String(error.message || error); });

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The page of a saved run in a browser, and the server. With `whole` also one of doubles, and pages of the server: a stored run, live ones.
+# usage: page.sh quick|whole ROOT CUBOCT NODE CHROMIUM [PICTURES]
+set -euo pipefail
+tier=$1 root=$2 cuboct=$3 node=$4 chromium=$5 pictures=${6-}
+here=$root/tests/view study_web=$root/study/report/web
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+saved() {  # NAME SCENE WORDS...
+  local name=$1 scene=$2
+  shift 2
+  "$cuboct" run "$root/$scene" --quiet --frames none --out "$work/$name" "$@" >/dev/null
+  "$cuboct" view "$work/$name" --save "$work/$name.html"
+  /usr/bin/python3 "$here/trace_numbers.py" "$work/$name" >"$work/$name.json"
+  if [ -n "$pictures" ]; then mkdir -p "$pictures/$name"; fi
+  "$node" "$here/saved_page_test.mjs" "$work/$name.html" "$work/$name.json" "$chromium" "$study_web" ${pictures:+"$pictures/$name"}
+}
+
+saved words scenes/two_types.toml --steps 60 --frame-every 30
+browser=-
+if [ "$tier" = whole ]; then
+  saved doubles scenes/lj_block.toml --steps 40 --frame-every 20 --engine reference
+  browser=$chromium
+fi
+"$node" "$here/served_page_test.mjs" "$cuboct" "$work/words" "$work/words.json" "$root/scenes/lj_block.toml" "$work/live" "$browser" "$study_web" \
+  ${pictures:+"$pictures"}

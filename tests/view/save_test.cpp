@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+// `cuboct view` as a command: what it writes, and what it refuses.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "model/base/text.h"
+#include "tests/cli/shell.h"
+#include "tests/support/hostile.h"
+
+namespace cuboct::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class View : public testing::Test {
+ protected:
+  // 256 particles, 5 frames.
+  static void SetUpTestSuite() {
+    bench_ = new Bench(false);
+    const Answer ran = bench_->cuboct({"run", "scenes/lj_block.toml", "--steps", "20", "--frame-every", "5",
+                                       "--quiet", "--frames", "none", "--out", bench_->path("run")});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  }
+  static void TearDownTestSuite() { delete bench_; }
+
+  static std::string path(const std::string& name) { return bench_->path(name); }
+  static Answer view(std::vector<std::string> words) {
+    words.insert(words.begin(), "view");
+    return bench_->cuboct(words);
+  }
+  // Of the file that words save.
+  static std::string saved(std::vector<std::string> words) {
+    words.insert(words.end(), {"--save", path("page.html")});
+    const Answer answer = view(words);
+    EXPECT_EQ(answer.code, 0) << answer.err;
+    return contents(path("page.html"));
+  }
+  static size_t blocks(const std::string& page) {
+    size_t count = 0;
+    for (size_t at = 0; (at = page.find("<script type=\"text/plain\" id=\"b", at)) != std::string::npos; ++at)
+      ++count;
+    return count;
+  }
+  static Bench* bench_;
+};
+Bench* View::bench_ = nullptr;
+
+TEST_F(View, SavesTheSameBytesTwiceAndLoadsNothing) {
+  const std::string page = saved({path("run")});
+  EXPECT_TRUE(page == saved({path("run")}));
+  EXPECT_EQ(blocks(page), 5U * 7);  // places, types, words, velocity, axial strain, strain, broken bonds
+  EXPECT_NE(page.find("connect-src 'none'"), std::string::npos);
+  EXPECT_NE(page.find("The MIT License"), std::string::npos);
+  for (const char* outside : {"<link rel=\"stylesheet", " src=\"", "@story@", "@script@", "@blocks@"})
+    EXPECT_EQ(page.substr(0, page.find("<script>")).find(outside), std::string::npos) << outside;
+}
+
+TEST_F(View, SaysWhatItLeavesOut) {
+  const Answer answer =
+      view({path("run"), "--every", "3", "--particles", "100", "--save", path("part.html")});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("frames     3 of the run's 5\n"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("particles  100 of 256\n"), std::string::npos) << answer.out;
+  const std::string page = contents(path("part.html"));
+  EXPECT_EQ(blocks(page), 3U * 7);
+  EXPECT_NE(page.find(R"("left_out":"of the run's 5")"), std::string::npos);
+  EXPECT_NE(page.find(R"("particles":256)"), std::string::npos);
+  EXPECT_NE(page.find(R"("shown":100)"), std::string::npos);
+}
+
+// Nothing is written, and the page of before stays.
+TEST_F(View, RefusesAPageThatIsTooLarge) {
+  const Answer ran = bench_->cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frame-every", "1",
+                                     "--quiet", "--frames", "none", "--out", path("large")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  std::ofstream(path("old.html")) << "old";
+  const Answer answer = view({path("large"), "--limit", "1", "--save", path("old.html")});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(answer.err.starts_with("the page would take some ")) << answer.err;
+  EXPECT_NE(answer.err.find(" MB, above the 1 MB of --limit: 21 frames of "), std::string::npos)
+      << answer.err;
+  EXPECT_NE(answer.err.find("\n  hint: --every "), std::string::npos) << answer.err;
+  EXPECT_TRUE(contents(path("old.html")) == "old");
+}
+
+TEST_F(View, RefusesWhatIsNoRun) {
+  EXPECT_EQ(view({path("nothing"), "--save", path("x.html")}).err,
+            fmt::format("--save is of a run that is over, and {0} is no directory\n  hint: cuboct run {0} "
+                        "--out DIR, then cuboct "
+                        "view DIR --save {1}\n",
+                        path("nothing"), path("x.html")));
+  fs::create_directory(path("empty"));
+  const Answer empty = view({path("empty"), "--save", path("x.html")});
+  EXPECT_EQ(empty.code, 2);
+  EXPECT_EQ(empty.err,
+            fmt::format("{} holds no run: no file run.toml\n  hint: 'cuboct run SCENE --out DIR' makes one\n",
+                        path("empty")));
+  EXPECT_FALSE(fs::exists(path("x.html")));
+  const Answer option = view({path("run"), "--steps", "5"});
+  EXPECT_EQ(option.code, 2);
+  EXPECT_EQ(option.err, fmt::format("--steps is of a run that is started, and {} is a directory\n  hint: "
+                                    "cuboct view SCENE starts one\n",
+                                    path("run")));
+  const Answer scene = view({path("missing.toml"), "--no-open"});
+  EXPECT_EQ(scene.code, 2);
+  EXPECT_NE(scene.err.find("missing.toml"), std::string::npos) << scene.err;
+}
+
+// A scene that cannot be run is refused in the words of `cuboct run`, before there is an address.
+TEST_F(View, TellsWhatTheRunRefuses) {
+  std::ofstream(path("bad.toml")) << "title = \"bad\"\n[packing]\npitch = \"0.5 m m\"\n";
+  const Answer run = bench_->cuboct({"run", path("bad.toml")}), seen = view({path("bad.toml"), "--no-open"});
+  EXPECT_EQ(seen.code, 2);
+  EXPECT_EQ(seen.out, "");
+  EXPECT_EQ(seen.err, run.err);
+  const Answer kept = view({path("bad.toml"), "--no-open", "--out", path("never")});
+  EXPECT_EQ(kept.err, run.err);
+  EXPECT_FALSE(fs::exists(path("never")));
+}
+
+TEST_F(View, HostileTextIsText) {
+  std::ofstream(path("evil.toml")) << "title = " << hostile_toml() << R"(
+units = "reduced"
+mass = 1.0
+[packing]
+pitch = "relaxed"
+[box]
+cells = [4, 4, 4]
+periodic = "xyz"
+[law]
+kind = "lj"
+epsilon = 1.0
+sigma = 1.0
+cutoff = 1.8
+[[material]]
+name = "so<script>alert(1)<!--ft"
+[run]
+dt = 0.004
+steps = 2
+)";
+  const Answer ran =
+      bench_->cuboct({"run", path("evil.toml"), "--quiet", "--frames", "none", "--out", path("evil")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string page = saved({path("evil")});
+  // Elements of our own alone: three of data and script beside the blocks.
+  size_t scripts = 0;
+  for (size_t at = 0; (at = page.find("<script", at)) != std::string::npos; ++at) ++scripts;
+  EXPECT_EQ(scripts, blocks(page) + 2);
+  EXPECT_NE(page.find("<title>" + html_text(hostile_text()) + "</title>"), std::string::npos);
+  EXPECT_FALSE(take_loot());
+}
+
+}  // namespace
+}  // namespace cuboct::test

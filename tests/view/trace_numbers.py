@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What the trace of a run holds, by h5py, for the test of its page to compare with.
+
+usage: trace_numbers.py DIR >FILE.json"""
+import json
+import sys
+
+import h5py
+import numpy as np
+
+IDS = 24  # particles of each frame, spread over all
+
+
+def some(count):
+    return sorted({int(k) for k in np.linspace(0, count - 1, IDS)})
+
+
+def fixed_frames(trace):
+    head, frames, first = trace.attrs, trace["frames"], trace["frames/first"][:]
+    edge = head["cell_edge"] * head.get("cell_shape", np.ones(3))
+    unit = edge * 2.0 ** -(int(head["position_frac"]) + int(head["guard"]))
+    cells = trace["lattice/cell"][:]
+    for k, step in enumerate(frames["step"][:]):
+        rows = slice(first[k], first[k + 1])
+        x, v, cell = frames["x"][rows], frames["v"][rows], cells[frames["node"][rows]]
+        place = head["origin"] + cell * edge + x * unit
+        ids = some(len(x))
+        yield {"step": int(step), "ids": ids, "x": place[ids].tolist(), "v": (v[ids] * unit / head["dt"]).tolist(),
+               "words": [[str(word) for word in (*x[i], *v[i])] for i in ids], "cells": cell[ids].tolist(),
+               "speed": np.linalg.norm(v * unit / head["dt"], axis=1).tolist(), "places": place.tolist(), "types": frames["type"][rows].tolist()}
+
+
+def real_frames(trace):
+    bodies = trace["bodies"]
+    count = len(bodies["type"])
+    for k, step in enumerate(bodies["step"][:]):
+        x, v = bodies["x"][k * count:(k + 1) * count], bodies["v"][k * count:(k + 1) * count]
+        ids = some(count)
+        yield {"step": int(step), "ids": ids, "x": x[ids].tolist(), "v": v[ids].tolist(), "words": None, "cells": None,
+               "speed": np.linalg.norm(v, axis=1).tolist(), "places": x.tolist(), "types": bodies["type"][:].tolist()}
+
+
+with h5py.File(sys.argv[1] + "/trace.h5") as trace:
+    real = "bodies" in trace and len(trace["bodies/step"]) > 0
+    curves = {name: [curve["step"][:].tolist(), [value if np.isfinite(value) else None for value in curve["value"][:].tolist()]] for name, curve in trace["curves"].items()}
+    print(json.dumps({"title": trace.attrs["title"].decode() if isinstance(trace.attrs["title"], bytes) else trace.attrs["title"],
+                      "dt": float(trace.attrs["dt"]), "types": [name.decode() for name in trace["types"][:]],
+                      "frames": list(real_frames(trace) if real else fixed_frames(trace)), "curves": curves}))
