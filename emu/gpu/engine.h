@@ -22,15 +22,15 @@ enum class Arithmetic : uint8_t { fixed, float32, float64 };
 const char* to_string(Arithmetic arithmetic);  // "fixed", "float", "double"
 
 inline constexpr int kMostSlabs = 16;
-// Particles that one device takes through a batch of steps in one launch. More are done sooner by a launch for
-// each step (docs/measured/gpu.md).
+// Particles that one device takes through a batch of steps in one launch. More are done sooner by a launch
+// for each step (docs/measured/gpu.md).
 inline constexpr uint32_t kMostTogether = 10'000;
 
 struct Options {
   // CUDA's ordinals, one per slab of the scene, at most kMostSlabs. One that comes twice holds two slabs:
   // bits are the same.
   std::vector<int> devices{0};
-  int block = 128;  // threads of a block, a multiple of 32; leaves no mark in the bits
+  int block = 128;                    // threads of a block, a multiple of 32; leaves no mark in the bits
   uint32_t together = kMostTogether;  // 0: a launch for each step; leaves no mark in the bits
 };
 

@@ -183,9 +183,9 @@ struct Step {
   // Kicks and moves the particle, and looks whether the step may be.
   template <class Cached>
   CUBOCT_DEVICE void complete(uint32_t i, uint32_t now, const Cached& rule, const typename Policy::Sum& sum,
-                              bool sound, const typename Policy::Position& before, typename Policy::Position x,
-                              typename Policy::Velocity v, const ParticlesView<Policy>& from,
-                              const ParticlesView<Policy>& to) const {
+                              bool sound, const typename Policy::Position& before,
+                              typename Policy::Position x, typename Policy::Velocity v,
+                              const ParticlesView<Policy>& from, const ParticlesView<Policy>& to) const {
     auto residue = from.residue.load(i);
     if (from.u) {
       auto u = from.u[i];

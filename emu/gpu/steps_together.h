@@ -67,7 +67,8 @@ struct StepsTogether {
         if (entry[r] != kNever && pairs.distance2(entry[r], other[r]) <= step.inside2) {
           int away[3];
           Entry<Policy::kReach>::away(entry[r], away);
-          pairs.sound &= Policy::part_of(pairs.rule, pairs.grid, pairs.x, pairs.v, other[r], w[r], away, part[r]);
+          pairs.sound &=
+              Policy::part_of(pairs.rule, pairs.grid, pairs.x, pairs.v, other[r], w[r], away, part[r]);
         }
       }
       CUBOCT_UNROLL

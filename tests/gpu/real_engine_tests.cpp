@@ -212,8 +212,8 @@ TEST(GpuDouble, FollowsTheReference) {
   compare(flight(), 2);
 }
 
-// The same bits in calls of one step or of many, in a launch for each step or for many, on any number of slabs,
-// with blocks of any size.
+// The same bits in calls of one step or of many, in a launch for each step or for many, on any number of
+// slabs, with blocks of any size.
 void expect_one_run(const Trial& run, Arithmetic arithmetic, int most) {
   SCOPED_TRACE(fmt::format("{}, {}", run.name, to_string(arithmetic)));
   const auto first = engine_of(run, arithmetic, slabs(1));

@@ -296,8 +296,8 @@ struct PairLanes {
 
 template <class F>
 __global__ void __launch_bounds__(kLargestBlock)
-    together_kernel(uint32_t end, const uint32_t* cache, uint32_t words, uint32_t steps, MeetingWords* meeting,
-                    uint64_t* sums, const __grid_constant__ F f) {
+    together_kernel(uint32_t end, const uint32_t* cache, uint32_t words, uint32_t steps,
+                    MeetingWords* meeting, uint64_t* sums, const __grid_constant__ F f) {
   extern __shared__ uint4 memory[];
   auto* here = reinterpret_cast<uint32_t*>(memory);
   for (uint32_t k = threadIdx.x; k < words; k += blockDim.x) here[k] = cache[k];
@@ -382,8 +382,8 @@ bool go_on_together(Stream& stream, uint32_t end, int block, const void* cache, 
   const auto* from = static_cast<const uint32_t*>(cache);
   auto count = static_cast<uint32_t>(words);
   void* arguments[] = {&end, &from, &count, &steps, &met, &sums, const_cast<F*>(&f)};
-  check(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks), dim3(static_cast<unsigned>(block)), arguments, words * 4,
-                                    stream.get()),
+  check(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks),
+                                    dim3(static_cast<unsigned>(block)), arguments, words * 4, stream.get()),
         "start a kernel");
   return true;
 }
