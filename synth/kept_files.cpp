@@ -56,9 +56,9 @@ bool KeptFiles::take(const std::string& key, const std::string& to) const {
   }
 }
 
-void KeptFiles::keep(const std::string& key, const std::string& from,
+bool KeptFiles::keep(const std::string& key, const std::string& from,
                      const std::vector<std::string>& files) const {
-  if (directory_.empty()) return;
+  if (directory_.empty()) return false;
   const fs::path entry = fs::path(directory_) / key;
   const fs::path temporary = temporary_beside(entry.string());
   std::error_code none;
@@ -73,8 +73,10 @@ void KeptFiles::keep(const std::string& key, const std::string& from,
     fs::remove_all(entry);  // one that was not whole
     fs::rename(temporary, entry);
     make_room(key);
+    return true;
   } catch (const std::exception&) {
     fs::remove_all(temporary, none);
+    return false;
   }
 }
 

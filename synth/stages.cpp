@@ -34,6 +34,7 @@ std::string Stages::expected() const {
 
 void Stages::make(const std::string& name, const InputKey& key, const std::function<void()>& work) {
   name_ = name;
+  pending_ = {};
   told_ = kept_.take(key.text(), directory_);
   if (told_) {
     known_.push_back(name);
@@ -44,8 +45,7 @@ void Stages::make(const std::string& name, const InputKey& key, const std::funct
   time(work);
   std::set<std::string> files = files_in(directory_);
   std::erase_if(files, [&](const std::string& file) { return before.contains(file); });
-  kept_.keep(key.text(), directory_, {files.begin(), files.end()});
-  made_ = true;
+  pending_ = {key.text(), {files.begin(), files.end()}};
 }
 
 void Stages::make_again(const std::string& name, const std::function<void()>& work) {
@@ -76,6 +76,9 @@ void Stages::announce(const std::string& first) {
 }
 
 void Stages::found(const std::string& what) {
+  // What was found has been read from its files: a tool on a full disk may end well and leave a part of them.
+  if (!pending_.key.empty()) made_ = kept_.keep(pending_.key, directory_, pending_.files) || made_;
+  pending_ = {};
   if (told_) return;
   told_ = true;
   std::string line = fmt::format("{}: {:.{}f} s, {}", name_, seconds_, seconds_ < 10 ? 1 : 0, what);

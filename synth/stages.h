@@ -26,7 +26,7 @@ class Stages {
   std::string expected() const;
 
   // Has `work` make files, or takes those that are kept under `key`. All that it adds to the directory is
-  // kept.
+  // kept once the stage says what it found.
   void make(const std::string& name, const InputKey& key, const std::function<void()>& work);
   // The same of a stage of seconds, which is made each time: nothing is said where it is the only one.
   void make_again(const std::string& name, const std::function<void()>& work);
@@ -48,6 +48,11 @@ class Stages {
     bool told = false;
   };
   std::map<std::string, Time> times_;
+  struct Pending {
+    std::string key;
+    std::vector<std::string> files;
+  };
+  Pending pending_;  // of the stage at hand
   Say tells_;
   bool announced_ = false, made_ = false;
   bool told_ = true;  // what the stage at hand found is not to be said, or was

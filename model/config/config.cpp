@@ -169,7 +169,8 @@ void check_keys(const ConfigFile& file) {
 
 // What toml++ says of a file that is no TOML; of what happens most in words that say what to write.
 std::pair<std::string, std::string> told_of_toml(const std::string& said) {
-  if (said.find("control characters other than TAB") != std::string::npos)
+  if (said.find("control characters other than TAB") != std::string::npos &&
+      said.find("comments") == std::string::npos)
     return {"a line ends, or has a control character, within a text",
             "close the text by the quote that began it"};
   const std::string key = "cannot redefine existing table '";

@@ -416,7 +416,12 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   if (scene.loading) check_static_rule(root, scene.rule);
   if (scene.asked_deform) {
     scene.asked_deform->steps = scene.steps * (stage ? stage->parts() - stage->part() : 1);
-    if (box_fault(scene, 0).empty()) begin_box(scene, Vec3::Zero());  // else every engine refuses the box
+    // A stage behind another, or a run from another's end, begins in the box that was left.
+    const bool begins = scene.start.empty() && (!stage || stage_names(root).front().name == scene.stage);
+    if (!begins)
+      set_box(scene, Vec3::Zero());
+    else if (box_fault(scene, 0).empty())  // else every engine refuses the box
+      begin_box(scene, Vec3::Zero());
   }
   read_reach(root, scene);
   for (Probe& probe : scene.probes)

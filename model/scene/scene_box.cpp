@@ -79,7 +79,7 @@ std::string box_fault(const Scene& scene, uint64_t step) {
   return {};
 }
 
-void begin_box(Scene& scene, const Vec3& strain) {
+void set_box(Scene& scene, const Vec3& strain) {
   if (!scene.asked_deform && strain.isZero(0)) return;
   for (const Probe& probe : scene.probes)
     if (probe.kind == Probe::Kind::crack)
@@ -99,7 +99,11 @@ void begin_box(Scene& scene, const Vec3& strain) {
     if (!(deform.packed.extent[axis] > 0)) deform.per_step[axis] = 0;
   scene.deform = deform;
   scene.periodic = deform.at(0);
-  if (!deform.moves()) return;
+}
+
+void begin_box(Scene& scene, const Vec3& strain) {
+  set_box(scene, strain);
+  if (!scene.deforms()) return;
   // The lengths are linear in time: the first step that does not fit follows from those of both ends.
   std::string fault = box_fault(scene, scene.steps);
   if (fault.empty()) return;

@@ -154,6 +154,8 @@ std::pair<Periodic, std::array<bool, 3>> read_box(const ConfigTable& root, const
 void read_deform(const ConfigTable& root, const StagePart* stage, const SceneChoice& choice, Scene& scene);
 // The box's strain, counted from the box as packed, after `time` (s): 0 where it keeps its lengths.
 Vec3 asked_strain(const Scene& scene, double time);
+// As begin_box (model/scene/scene.h), of a box that may begin elsewhere: where it ends is not yet known.
+void set_box(Scene& scene, const Vec3& strain);
 
 // Everything that gives particles: positions and velocities ([packing], [crystal], [geometry], [particles],
 // [[particle]], [[velocity]]), their materials and constraints. Fills scene.body, scene.rule.types and

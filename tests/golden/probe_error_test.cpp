@@ -232,7 +232,7 @@ TEST(ProbeError, AskedOfABarThatRingsIsKept) {
 // and part by 1e-7 of a cell in a step.
 TEST(ProbeError, ATextsFrictionOfSlowBondsIsKept) {
   const auto swelling = [](const std::string& friction) {
-    return parse_scene(R"(density = "1200 kg/m^3"
+    return parse_scene(R"x(density = "1200 kg/m^3"
 [packing]
 pitch = "1 mm"
 [geometry]
@@ -268,10 +268,10 @@ rate = "diffusivity / (2 * pitch^2)"
 rest = "r0 * (1 + 0.02 * (w_i + w_j) / 2)"
 [[rule.round]]
 sum.flow = "rate * (w_j - w_i)"
-sum.force = "spring * (r - rest) / r * d)" +
-                           friction + R"("
+sum.force = "spring * (r - rest) / r * d)x" +
+                           friction + R"x("
 finish.w = "select(wet, w, w + dt * flow)"
-)",
+)x",
                        "moisture.toml");
   };
   const Scene rubbing = swelling(" + 0.02 kg/s * dot(v_j - v_i, d) / r^2 * d");

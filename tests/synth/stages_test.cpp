@@ -172,5 +172,29 @@ TEST_F(Kept, StagesSayWhatComesAndWhatTheyFound) {
   EXPECT_EQ(lines, Lines{});
 }
 
+// As of a tool that ends well on a full disk: its files turn out to be cut when they are read.
+TEST_F(Kept, AStageIsKeptOnceItsFilesHaveBeenRead) {
+  const std::string out = scratch_.path("out");
+  make_directory(out);
+  int made = 0;
+  InputKey key;
+  key.add("rtl");
+  const auto flow = [&](const std::string& store, bool reads) {
+    fs::remove_all(out + "/gates");
+    Stages stages(out, KeptFiles(store), {"netlist"}, [](const std::string&) {});
+    stages.make("netlist", key, [&] { ++made, write_text(out + "/gates", "gates"); });
+    if (reads) stages.found("5 LUT");
+    return stages.kept();
+  };
+  EXPECT_EQ(flow(store_, false), "");
+  EXPECT_EQ(flow(store_, true), store_);
+  EXPECT_EQ(made, 2);
+  EXPECT_EQ(flow(store_, true), "");
+  EXPECT_EQ(made, 2);
+  write_text(scratch_.path("file"), "");
+  EXPECT_EQ(flow(scratch_.path("file") + "/below", true), "");
+  EXPECT_EQ(made, 3);
+}
+
 }  // namespace
 }  // namespace cuboct::synth
