@@ -8,6 +8,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -17,19 +18,22 @@
 namespace cuboct {
 namespace {
 
-constexpr int kShare = 20;      // of the run's time, one part
-constexpr timeval kLong{2, 0};  // a page that takes nothing for so long is left
+constexpr int kShare = 20;                // of the run's time, one part
+constexpr timeval kLong{2, 0};            // a page that takes nothing for so long is left
+constexpr int kLook = 100;                // ms
+constexpr std::chrono::seconds kAway{2};  // until a page that could not be shown a frame is tried again
 
 // The address of a socket is at most 107 bytes: it goes through a descriptor of the directory.
+// `flags`: of the socket.
 template <typename Use>
-int with_address(const std::string& directory, Use use) {
+int with_address(const std::string& directory, int flags, Use use) {
   const int place = open(directory.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
   if (place < 0) return -1;
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string path = fmt::format("/proc/self/fd/{}/{}", place, kViewSocket);
   std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
-  int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  int made = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0);
   if (made >= 0 && use(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     const int error = errno;
     close(made);
@@ -44,18 +48,25 @@ int with_address(const std::string& directory, Use use) {
 
 }  // namespace
 
-int connect_in(const std::string& directory) { return with_address(directory, connect); }
+// EAGAIN where a page has more that wait than it takes: it is stopped. To wait for it could take for ever.
+int connect_in(const std::string& directory) {
+  const int made = with_address(directory, SOCK_NONBLOCK, connect);
+  if (made >= 0) fcntl(made, F_SETFL, fcntl(made, F_GETFL) & ~O_NONBLOCK);
+  return made;
+}
 
 int listen_in(const std::string& directory) {
-  return with_address(directory, [](int made, const sockaddr* address, socklen_t size) {
+  return with_address(directory, 0, [](int made, const sockaddr* address, socklen_t size) {
     return bind(made, address, size) != 0 ? -1 : listen(made, 4);
   });
 }
 
 bool is_viewed(const std::string& directory) {
   const int page = directory.empty() ? -1 : connect_in(directory);
-  if (page >= 0) close(page);
-  return page >= 0;
+  if (page < 0) return false;
+  const bool own = is_own(page);
+  close(page);
+  return own;
 }
 
 bool is_own(int socket) {
@@ -111,11 +122,16 @@ bool FrameFeed::send(const std::string& json, const std::vector<std::string>& bl
 void FrameFeed::obey(bool waits) {
   while (socket_ >= 0 && !interrupted()) {
     pollfd from{socket_, POLLIN, 0};
-    const int there = poll(&from, 1, waits && paused_ ? -1 : 0);
-    if (there < 0 && errno == EINTR) continue;
+    // Not without end: a signal may come between the look at it and the wait.
+    const int there = poll(&from, 1, waits && paused_ ? kLook : 0);
+    if ((there < 0 && errno == EINTR) || (there == 0 && waits && paused_)) continue;
     if (there <= 0) return;
     char word = 0;
-    if (recv(socket_, &word, 1, 0) <= 0) return leave();  // the page's program is gone: the run goes on
+    if (recv(socket_, &word, 1, MSG_PEEK) <= 0)
+      return leave();  // the page's program is gone: the run goes on
+    // It stands for a frame of its own: the next wait takes it.
+    if (!waits && paused_ && static_cast<FeedWord>(word) == FeedWord::one_frame) return;
+    if (recv(socket_, &word, 1, 0) <= 0) return leave();
     switch (static_cast<FeedWord>(word)) {
       case FeedWord::pause:
         paused_ = true;
@@ -137,10 +153,16 @@ void FrameFeed::show(const Frame& frame, const State* state) {
   obey(false);
   if (!paused_ && Clock::now() < next_) return;
   const auto began = Clock::now();
-  if (!begin()) return leave();
+  const auto spent = [&] { return (kShare - 1) * (Clock::now() - began); };
+  // What a page that is stuck costs is a twentieth, too.
+  const auto give_up = [&] {
+    if (socket_ >= 0) next_ = Clock::now() + std::max<Clock::duration>(spent(), kAway);
+    leave();
+  };
+  if (!begin()) return give_up();
   const ViewFrame made = form_.make(frame, state);
-  if (!send(made.json(), made.blocks)) return leave();
-  next_ = Clock::now() + (kShare - 1) * (Clock::now() - began);
+  if (!send(made.json(), made.blocks)) return give_up();
+  next_ = Clock::now() + spent();
   obey(true);
 }
 

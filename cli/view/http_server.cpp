@@ -103,11 +103,19 @@ MHD_Result respond(MHD_Connection* connection, const HttpAnswer& answer) {
 }  // namespace
 
 struct HttpServer::Impl {
+  // A name that a stranger's page had pointed here is none of ours. Browsers leave the port out where it is
+  // that of HTTP.
+  bool is_ours(std::string_view host) const {
+    const std::string port = host_.substr(host_.find(':'));
+    for (const std::string name : {"127.0.0.1", "localhost"})
+      if (host == name + port || (port == ":80" && host == name)) return true;
+    return false;
+  }
+
   HttpAnswer answer_to(MHD_Connection* connection, const char* url, std::string_view method) const {
     const char* host = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, "Host");
     const std::string_view path = url;
-    // A name that a stranger's page had pointed here is none of ours.
-    if (host == nullptr || (host != host_ && host != "localhost" + host_.substr(host_.find(':')))) return {};
+    if (host == nullptr || !is_ours(host)) return {};
     if (path.size() < token_.size() + 2 || path[0] != '/' || !same(path.substr(1, token_.size()), token_) ||
         path[token_.size() + 1] != '/')
       return {};

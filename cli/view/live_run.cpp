@@ -6,14 +6,17 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "cli/run/frame_feed.h"
+#include "model/base/directory_lock.h"
 #include "model/base/error.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
@@ -21,6 +24,9 @@
 
 namespace cuboct {
 namespace {
+
+// What the frames leave free of their disk: so many bytes, or this part of it where that is less.
+constexpr uint64_t kFree = 256'000'000, kFreePart = 10;
 
 constexpr uint64_t kMostJson = 1 << 26, kMostBlocks = 1000, kMostBytes = uint64_t{1} << 36;
 
@@ -48,23 +54,35 @@ int unnamed_file(const std::string& directory) {
   return file;
 }
 
+struct Disk {
+  uint64_t free = UINT64_MAX / 2, margin = kFree;  // bytes
+};
+
+Disk disk_of(int file) {
+  struct statvfs disk {};
+  if (fstatvfs(file, &disk) != 0) return {};
+  return {disk.f_bavail * disk.f_frsize, std::min(kFree, disk.f_blocks * disk.f_frsize / kFreePart)};
+}
+
 std::string socket_path(const std::string& directory) { return directory + "/" + kViewSocket; }
 
 }  // namespace
 
 LiveRun::LiveRun(std::string directory, std::string log)
     : directory_(std::move(directory)), log_(std::move(log)) {
-  if (const int other = connect_in(directory_); other >= 0) {
-    close(other);
+  const int other = connect_in(directory_);
+  const bool stopped = other < 0 && errno == EAGAIN, own = other >= 0 && is_own(other);
+  if (other >= 0) close(other);
+  if (stopped || own)
     throw InputError(fmt::format("another cuboct view follows {}", directory_), "its page shows the run");
-  }
   unlink(socket_path(directory_).c_str());  // of one that was killed
   spool_ = unnamed_file(directory_);
   listener_ = listen_in(directory_);
   wake_ = eventfd(0, EFD_CLOEXEC);
   if (listener_ < 0 || wake_ < 0) {
     const int error = errno;
-    close(spool_);
+    for (const int file : {listener_, spool_, wake_})
+      if (file >= 0) close(file);
     throw InputError(fmt::format("cannot listen in {}: {}", directory_, std::strerror(error)));
   }
   thread_ = std::thread([this] { listen(); });
@@ -80,11 +98,6 @@ LiveRun::~LiveRun() {
   thread_.join();
   unlink(socket_path(directory_).c_str());
   for (const int file : {listener_, spool_, wake_}) close(file);
-}
-
-bool LiveRun::is_over() const {
-  const std::lock_guard lock(guard_);
-  return state_ == "ended";
 }
 
 bool LiveRun::has_frames() const {
@@ -115,9 +128,12 @@ void LiveRun::take(int run) {
     while (take_message(run)) continue;
   } catch (const std::exception& error) {  // a full disk: what came stays, the run goes on
     const std::lock_guard lock(guard_);
-    lines_.push_back(fmt::format("no more frames: {}", line_text(error.what())));
+    if (!std::exchange(failed_, true))
+      lines_.push_back(fmt::format("a frame is left out: {}", line_text(error.what())));
   }
+  const bool cut = ftruncate(spool_, end_) == 0;  // a frame that is not whole
   const std::lock_guard lock(guard_);
+  if (!cut && !std::exchange(failed_, true)) lines_.push_back("the file of the frames cannot be cut");
   run_ = -1;
   state_ = frames_.empty() ? "waiting" : "ended";  // who only looked whether somebody listens sent none
 }
@@ -131,26 +147,66 @@ bool LiveRun::take_message(int run) {
   Kept kept;
   kept.json.resize(sizes.json);
   if (!receive(run, kept.json.data(), kept.json.size())) return false;
-  std::string bytes;
+  uint64_t whole = 0;
   for (const FeedBlock& block : blocks) {
     if (block.bytes > kMostBytes || block.row == 0) return false;
+    whole += block.bytes;
+  }
+  make_room(whole);
+  std::string bytes;
+  off_t at = end_;
+  for (const FeedBlock& block : blocks) {
     bytes.resize(block.bytes);
     if (!receive(run, bytes.data(), bytes.size())) return false;
-    for (size_t done = 0; done < bytes.size();) {
-      const ssize_t wrote =
-          pwrite(spool_, bytes.data() + done, bytes.size() - done, end_ + static_cast<off_t>(done));
-      if (wrote <= 0) throw std::runtime_error(std::strerror(errno));
-      done += static_cast<size_t>(wrote);
-    }
-    kept.blocks.push_back({end_, bytes.size(), block.row});
-    end_ += static_cast<off_t>(bytes.size());
+    store(bytes, at);
+    kept.blocks.push_back({at, bytes.size(), block.row});
+    at += static_cast<off_t>(bytes.size());
   }
+  end_ = at;
   const std::lock_guard lock(guard_);
   if (blocks.empty())
     head_ = std::move(kept.json);
   else
     frames_.push_back(std::move(kept));
   return true;
+}
+
+uint64_t LiveRun::Kept::bytes() const {
+  uint64_t sum = 0;
+  for (const Place& block : blocks) sum += block.bytes;
+  return sum;
+}
+
+void LiveRun::store(const std::string& bytes, off_t at) {
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t wrote =
+        pwrite(spool_, bytes.data() + done, bytes.size() - done, at + static_cast<off_t>(done));
+    if (wrote <= 0) throw std::runtime_error(std::strerror(errno));
+    done += static_cast<size_t>(wrote);
+  }
+}
+
+// For a frame of so many bytes. Once the disk is full, the newest frames take half of what was left free at
+// most, and of large ones the newest alone is kept.
+void LiveRun::make_room(uint64_t bytes) {
+  const Disk disk = disk_of(spool_);
+  const std::lock_guard lock(guard_);
+  if (disk.free < disk.margin + bytes && !loose_) {
+    loose_ = frames_.size();
+    lines_.push_back("the disk is nearly full: of the frames from here on the page keeps the newest alone");
+  }
+  if (!loose_) return;
+  uint64_t taken = bytes;
+  for (size_t k = *loose_; k < frames_.size(); ++k) taken += frames_[k].bytes();
+  for (; *loose_ < frames_.size() && taken > disk.margin / 2; ++*loose_) {
+    Kept& old = frames_[*loose_];
+    taken -= old.bytes();
+    if (!old.blocks.empty() && fallocate(spool_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, old.blocks[0].at,
+                                         static_cast<off_t>(old.bytes())) != 0)
+      throw std::runtime_error(std::strerror(errno));
+    old.blocks.clear();
+  }
+  if (bytes > disk_of(spool_).free / 2) throw std::runtime_error(std::strerror(ENOSPC));
 }
 
 void LiveRun::read_log() {
@@ -186,12 +242,13 @@ std::string LiveRun::story() {
 std::string LiveRun::news(size_t frames, size_t lines) {
   const std::lock_guard lock(guard_);
   read_log();
+  const bool lost = state_ == "ended" && is_locked(directory_);  // the run goes on without us, or writes
   std::vector<std::string> fresh, told;
   for (size_t k = std::min(frames, frames_.size()); k < frames_.size(); ++k) fresh.push_back(frames_[k].json);
   for (size_t k = std::min(lines, lines_.size()); k < lines_.size(); ++k) told.push_back(lines_[k]);
   return json_object({{"frames", json_array(fresh)},
                       {"lines", json(told)},
-                      {"state", json(state_)},
+                      {"state", json(lost ? std::string("lost") : state_)},
                       {"whole", json(false)}});
 }
 
@@ -214,6 +271,8 @@ Bytes LiveRun::block(size_t frame, size_t block, std::optional<size_t> row) {
     if (got <= 0) throw std::runtime_error("a frame cannot be read back");
     done += static_cast<size_t>(got);
   }
+  const std::lock_guard lock(guard_);
+  if (frames_[frame].blocks.empty()) return nullptr;  // a newer one has taken its place meanwhile
   return std::make_shared<const std::string>(std::move(bytes));
 }
 

@@ -4,7 +4,9 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -20,8 +22,6 @@ class LiveRun : public ViewSource {
   LiveRun(std::string directory, std::string log);
   ~LiveRun() override;
 
-  // The run has come, and has gone.
-  bool is_over() const;
   bool has_frames() const;
 
   std::string story() override;
@@ -37,10 +37,13 @@ class LiveRun : public ViewSource {
     };
     std::string json;
     std::vector<Place> blocks;
+    uint64_t bytes() const;
   };
   void listen();
   void take(int run);
   bool take_message(int run);
+  void make_room(uint64_t bytes);
+  void store(const std::string& bytes, off_t at);
   void read_log();
 
   std::string directory_, log_;
@@ -52,6 +55,8 @@ class LiveRun : public ViewSource {
   int run_ = -1;
   std::string head_, state_ = "waiting";
   std::vector<Kept> frames_;
+  std::optional<size_t> loose_;  // the disk is full: the first frame that a newer one may take the place of
+  bool failed_ = false;          // a frame could not be stored, and that was said
   std::vector<std::string> lines_;
   off_t log_read_ = 0;
 };

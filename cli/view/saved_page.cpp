@@ -2,10 +2,13 @@
 #include "cli/view/saved_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "cli/view/web.h"
 #include "model/base/base64.h"
@@ -54,40 +57,73 @@ size_t rounded_up(double value) {
   return static_cast<size_t>(std::ceil(value / power) * power);
 }
 
-[[noreturn]] void refuse_size(const StoredRun& run, double bytes, size_t limit) {
-  const double times = bytes / static_cast<double>(limit), mega = 1e-6 * bytes;
+// The elements of one frame.
+std::string blocks_of(const ViewFrame& frame, const StoredRun& run, size_t k) {
+  std::string blocks;
+  for (size_t b = 0; b < frame.blocks.size(); ++b) {
+    const std::string bytes = packed(parted(frame.blocks[b], run.form().blocks()[b].width()));
+    blocks += fmt::format("<script type=\"text/plain\" id=\"b{}-{}\">{}</script>\n", k, b,
+                          base64(bytes.data(), bytes.size()));
+  }
+  return blocks;
+}
+
+// `most`: bytes of the largest frame so far.
+[[noreturn]] void refuse_size(const StoredRun& run, size_t most, size_t limit, size_t every) {
+  const size_t frames = run.frames();
+  // Frames of a body that moves pack worse than the first.
+  for (const size_t k : {frames / 2, frames - 1}) {
+    const ViewFrame frame = run.frame(k);
+    most = std::max(most, blocks_of(frame, run, k).size() + frame.json().size());
+  }
+  const double fixed = static_cast<double>(page(run.title(), run.tell().json(), "", "'none'").size());
+  const double each = 1.1 * static_cast<double>(most), bytes = fixed + static_cast<double>(frames) * each;
+  const double room = static_cast<double>(limit) - fixed;
+  std::vector<std::string> hints;
+  // Each n-th of the frames, and the last: frames / n + 2 at most.
+  if (room / each >= 3)
+    hints.push_back(
+        fmt::format("--every {} keeps a part of the frames",
+                    every * rounded_up(static_cast<double>(frames) / (std::floor(room / each) - 2))));
+  // A part of the particles packs worse than all: as if it did not pack at all.
+  constexpr double kElement = 100;  // bytes beside those of the particles
+  size_t row = 0;
+  for (const ViewBlock& block : run.form().blocks()) row += block.row();
+  const double beside = kElement * static_cast<double>(run.form().blocks().size()) + 200;
+  const double part = (room / static_cast<double>(frames) - beside) / (1.4 * static_cast<double>(row));
+  if (part >= 1) hints.push_back(fmt::format("--particles {} a part of each", static_cast<size_t>(part)));
+  if (const size_t mega = rounded_up(1e-6 * bytes); mega <= kMostMegabytes)
+    hints.push_back(fmt::format("--limit {} takes all", mega));
+  if (hints.empty()) hints.emplace_back("--every and --particles together keep less");
   throw InputError(
       fmt::format(
           "the page would take some {:.3g} MB, above the {:.3g} MB of --limit: {} frames of {} particles",
-          mega, 1e-6 * static_cast<double>(limit), run.frames(), run.form().shown()),
-      fmt::format(
-          "--every {} keeps a part of the frames, --particles {} a part of each, --limit {} takes all",
-          rounded_up(times), static_cast<size_t>(static_cast<double>(run.form().shown()) / times * 0.9),
-          rounded_up(1.1 * mega)));
+          1e-6 * bytes, 1e-6 * static_cast<double>(limit), frames, run.form().shown()),
+      fmt::format("{}", fmt::join(hints, ", ")));
 }
 
 }  // namespace
 
 bool has_view_page() { return true; }
 
-std::string saved_page(const StoredRun& run, size_t limit) {
+std::string saved_page(const StoredRun& run, size_t limit, size_t every) {
   Story story = run.tell();
   std::string blocks;
+  size_t most = 0;
   for (size_t k = 0; k < run.frames(); ++k) {
     const ViewFrame frame = run.frame(k);
     story.frames.push_back(frame.json());
-    for (size_t b = 0; b < frame.blocks.size(); ++b) {
-      const std::string bytes = packed(parted(frame.blocks[b], run.form().blocks()[b].width()));
-      blocks += fmt::format("<script type=\"text/plain\" id=\"b{}-{}\">{}</script>\n", k, b,
-                            base64(bytes.data(), bytes.size()));
-    }
-    const double whole =
-        static_cast<double>(blocks.size()) / static_cast<double>(k + 1) * static_cast<double>(run.frames());
-    if (blocks.size() > limit) refuse_size(run, whole, limit);
+    const std::string added = blocks_of(frame, run, k);
+    most = std::max(most, added.size() + story.frames.back().size());
+    blocks += added;
+    if (blocks.size() > limit) refuse_size(run, most, limit, every);
   }
-  const std::string html = page(run.title(), story.json(), blocks, "'none'");
-  if (html.size() > limit) refuse_size(run, static_cast<double>(html.size()), limit);
-  return html;
+  std::string html = page(run.title(), story.json(), blocks, "'none'");
+  if (html.size() <= limit) return html;
+  if (run.frames() > 0) refuse_size(run, most, limit, every);
+  throw InputError(fmt::format("the page takes {:.3g} MB without any frame, above the {:.3g} MB of --limit",
+                               1e-6 * static_cast<double>(html.size()), 1e-6 * static_cast<double>(limit)),
+                   "a larger --limit");
 }
 
 std::string served_page() { return page("cuboct view", "{\"served\":true}", "", "'self'"); }

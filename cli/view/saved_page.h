@@ -13,9 +13,12 @@ namespace cuboct {
 // Whether this build has the page: it needs three.js, which npm fetches.
 bool has_view_page();
 
-// InputError, before anything is written, where the page would be larger than `limit` bytes. Same run, same
-// bytes.
-std::string saved_page(const StoredRun& run, size_t limit);
+// MB that a saved page may have at most.
+inline constexpr size_t kMostMegabytes = 2000;
+
+// InputError, before anything is written, where the page would be larger than `limit` bytes; its hint names
+// options that do. `every`: with which the run was read. Same run, same bytes.
+std::string saved_page(const StoredRun& run, size_t limit, size_t every);
 
 // The page that asks.
 std::string served_page();

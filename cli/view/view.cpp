@@ -28,7 +28,7 @@ struct ViewOptions {
   std::string what, save;
   uint64_t every = 1, particles = std::numeric_limits<uint32_t>::max(), limit = 100;
   uint32_t port = 0;
-  bool no_open = false;
+  bool no_open = false, limit_given = false, port_given = false, particles_given = false;
   // Of a run that is started.
   std::string arch, engine, out, steps, frame_every;
   bool force = false;
@@ -38,7 +38,7 @@ struct ViewOptions {
 void save(const ViewOptions& options) {
   check_writable(options.save);
   const StoredRun run(options.what, options.every, options.particles);
-  const std::string page = saved_page(run, options.limit * 1000000);
+  const std::string page = saved_page(run, options.limit * 1000000, options.every);
   write_text(options.save, page);
   const std::string left = run.left_out();
   const size_t shown = run.form().shown();
@@ -87,11 +87,21 @@ int view(const ViewOptions& options) {
       throw InputError(
           fmt::format("--save is of a run that is over, and {} is no directory", options.what),
           fmt::format("cuboct run {} --out DIR, then cuboct view DIR --save {}", options.what, options.save));
+    for (const auto& [given, option] :
+         {std::pair{options.port_given, "--port"}, {options.no_open, "--no-open"}})
+      if (given)
+        throw InputError(fmt::format("{} is of a page that is served, and --save serves none", option));
     save(options);
     return 0;
   }
-  WatchAsked asked{options.what,     options.every, options.particles, static_cast<uint16_t>(options.port),
-                   !options.no_open, options.answer};
+  if (options.limit_given) throw InputError("--limit is of a saved page: it goes with --save FILE.html");
+  WatchAsked asked{options.what,
+                   options.every,
+                   options.particles,
+                   static_cast<uint16_t>(options.port),
+                   options.particles_given,
+                   !options.no_open,
+                   options.answer};
   if (directory) return watch_directory(asked);
   if (const std::vector<StageName> stages = stages_of(options.what); !stages.empty())
     throw InputError(fmt::format("{} is a scene of stages, each with a directory of its own", options.what),
@@ -126,13 +136,16 @@ void add_view(Command& app, int& exit_code) {
       .option("--particles", options->particles,
               "at most N particles of each frame, spread evenly over the ids; default: all")
       .range(uint64_t{1}, uint64_t{1} << 32)
+      .given(options->particles_given)
       .type_name("N");
   command.option("--limit", options->limit, "MB that a saved page may have")
-      .range(uint64_t{1}, uint64_t{2000})
+      .range(uint64_t{1}, uint64_t{kMostMegabytes})
+      .given(options->limit_given)
       .show_default()
       .type_name("MB");
   command.option("--port", options->port, "port of 127.0.0.1; default: a free one")
       .range(0u, 65535u)
+      .given(options->port_given)
       .type_name("N");
   command.flag("--no-open", options->no_open, "print the address, and open no browser");
   command.option("--arch", options->arch, "of a SCENE: arch file (TOML); default: the defaults")

@@ -14,6 +14,7 @@ struct WatchAsked {
   std::string directory;              // of the run
   uint64_t every = 1, particles = 1;  // StoredRun
   uint16_t port = 0;
+  bool part = false;  // `particles` was asked for
   bool opens = true;  // in a browser, where there is a display
   Answer answer;
 };

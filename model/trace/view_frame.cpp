@@ -157,6 +157,12 @@ std::string ViewFrames::head_json(const std::string& engine) const {
   // What the eye should meet first: how far it is strained where that is measured, else how fast it moves.
   const bool strained = std::ranges::any_of(
       scene.probes, [](const Probe& probe) { return probe.kind == Probe::Kind::stress_strain; });
+  std::string deform = "null";  // BoxDeformation
+  if (scene.deform)
+    deform = json_object({{"origin", vector_json(scene.deform->packed.origin)},
+                          {"extent", vector_json(scene.deform->packed.extent)},
+                          {"strain", vector_json(scene.deform->strain)},
+                          {"per_step", vector_json(scene.deform->per_step)}});
   std::string words = "null";
   if (const FixedRule* rule = head_.rule) {
     const CellEdges edges = rule->edges();
@@ -175,6 +181,7 @@ std::string ViewFrames::head_json(const std::string& engine) const {
                       {"radius", json(style_.radius)},
                       {"periodic", json_object({{"origin", vector_json(style_.periodic.origin)},
                                                 {"extent", vector_json(style_.periodic.extent)}})},
+                      {"deform", deform},
                       {"types", json_array(style_.types, type_json)},
                       {"blocks", json_array(blocks_, block_json)},
                       {"type", std::to_string(kTypes)},

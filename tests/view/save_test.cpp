@@ -3,9 +3,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
+#include <regex>
 
+#include "model/base/directory_lock.h"
 #include "model/base/text.h"
 #include "tests/cli/shell.h"
 #include "tests/support/hostile.h"
@@ -82,8 +89,97 @@ TEST_F(View, RefusesAPageThatIsTooLarge) {
   EXPECT_TRUE(answer.err.starts_with("the page would take some ")) << answer.err;
   EXPECT_NE(answer.err.find(" MB, above the 1 MB of --limit: 21 frames of "), std::string::npos)
       << answer.err;
-  EXPECT_NE(answer.err.find("\n  hint: --every "), std::string::npos) << answer.err;
   EXPECT_TRUE(contents(path("old.html")) == "old");
+  // Each option that the hint names does.
+  const std::string hint = answer.err.substr(answer.err.find("\n  hint: ") + 1);
+  for (const std::string option : {"--every", "--particles", "--limit"}) {
+    std::smatch found;
+    ASSERT_TRUE(std::regex_search(hint, found, std::regex(option + " ([0-9]+)"))) << option << " in " << hint;
+    std::vector<std::string> words{path("large"), option, found[1]};
+    if (option != "--limit") words.insert(words.end(), {"--limit", "1"});
+    const std::string page = saved(words);
+    EXPECT_LE(page.size(), option == "--limit" ? 1000000 * std::stoul(found[1]) : 1000000U) << option;
+  }
+  // That of a part is of the run's frames, not of the part's.
+  const Answer part = view({path("large"), "--every", "2", "--limit", "1", "--save", path("old.html")});
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(part.err, found, std::regex("--every ([0-9]+)"))) << part.err;
+  EXPECT_GT(std::stoul(found[1]), 2U);
+  saved({path("large"), "--every", found[1], "--limit", "1"});
+}
+
+TEST_F(View, RefusesOptionsThatDoNothing) {
+  const auto refused = [](std::vector<std::string> words) {
+    const Answer answer = view(std::move(words));
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_EQ(answer.out, "");
+    return answer.err;
+  };
+  EXPECT_EQ(refused({path("run"), "--limit", "5"}),
+            "--limit is of a saved page: it goes with --save FILE.html\n");
+  EXPECT_EQ(refused({path("run"), "--no-open", "--save", path("x.html")}),
+            "--no-open is of a page that is served, and --save serves none\n");
+  EXPECT_EQ(refused({path("run"), "--port", "0", "--save", path("x.html")}),
+            "--port is of a page that is served, and --save serves none\n");
+  for (const std::string option : {"--every", "--particles"})
+    EXPECT_EQ(refused({"scenes/lj_block.toml", option, "5", "--no-open"}),
+              option +
+                  " is of a run that is over, and one that is started is not\n  hint: without it the "
+                  "page follows the run\n");
+}
+
+// A socket at which somebody listens and nobody takes a connection: that of a page whose process is stopped.
+class StoppedPage {
+ public:
+  explicit StoppedPage(const std::string& directory) : listener_(socket(AF_UNIX, SOCK_STREAM, 0)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    const std::string path = directory + "/.view";
+    EXPECT_LT(path.size(), sizeof address.sun_path);
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    EXPECT_EQ(bind(listener_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    EXPECT_EQ(listen(listener_, 0), 0);
+  }
+  ~StoppedPage() { close(listener_); }
+  StoppedPage(const StoppedPage&) = delete;
+  StoppedPage& operator=(const StoppedPage&) = delete;
+
+ private:
+  int listener_;
+};
+
+// It has place for one that waits: the run's first look fills that, and the rest find it full.
+TEST_F(View, AStoppedPageDoesNotStopARun) {
+  fs::create_directory(path("stuck"));
+  const StoppedPage page(path("stuck"));
+  const Answer ran = bench_->cuboct({"run", "scenes/lj_block.toml", "--steps", "20", "--frame-every", "1",
+                                     "--quiet", "--frames", "none", "--out", path("stuck")});
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(fs::exists(path("stuck") + "/trace.h5"));
+  // Nor is it pushed aside by another page.
+  DirectoryLock lock(path("stuck"), "a test");
+  const Answer second = view({path("stuck"), "--no-open"});
+  EXPECT_EQ(second.code, 2);
+  EXPECT_EQ(second.err,
+            fmt::format("another cuboct view follows {}\n  hint: its page shows the run\n", path("stuck")));
+}
+
+TEST_F(View, ABusyPortLeavesNoDirectory) {
+  const int listener = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in here{};
+  here.sin_family = AF_INET;
+  here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof here;
+  auto* const address = reinterpret_cast<sockaddr*>(&here);
+  ASSERT_EQ(bind(listener, address, size), 0);
+  ASSERT_EQ(listen(listener, 1), 0);
+  ASSERT_EQ(getsockname(listener, address, &size), 0);
+  const Answer answer = view({"scenes/lj_block.toml", "--no-open", "--out", path("none"), "--port",
+                              std::to_string(ntohs(here.sin_port))});
+  close(listener);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(answer.err.starts_with("cannot listen on 127.0.0.1:")) << answer.err;
+  EXPECT_FALSE(fs::exists(path("none")));
 }
 
 TEST_F(View, RefusesWhatIsNoRun) {

@@ -50,7 +50,7 @@ export class ServedFrames {
   }
   async ask(path) {
     const answer = await fetch(path, {cache: "no-store"});
-    if (!answer.ok) throw new Error(`${path}: ${answer.status} ${await answer.text()}`);
+    if (!answer.ok) throw Object.assign(new Error(`${path}: ${answer.status} ${await answer.text()}`), {status: answer.status});
     return answer;
   }
   async block(frame, index) {

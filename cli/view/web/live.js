@@ -5,7 +5,8 @@ import {by_id} from "./format.js";
 const kEvery = 200;   // ms between questions
 const kAway = 1000;   // ms, where the server did not answer
 
-const kStates = {waiting: "waiting for the run's first frame", running: "running", paused: "paused", ended: "the run is over", gone: "the server is gone; what was seen stays"};
+const kStates = {waiting: "waiting for the run's first frame", running: "running", paused: "paused",
+  lost: "no frames come; the run's directory is still in use", ended: "the run is over", gone: "the server is gone; what was seen stays"};
 
 export function follow(page, source) {
   const {story} = page;
@@ -23,7 +24,7 @@ export function follow(page, source) {
     by_id("live").dataset.state = state;
     by_id("pause").disabled = state !== "running";
     by_id("continue").disabled = by_id("step").disabled = state !== "paused";
-    by_id("end").disabled = state === "ended" || state === "gone" || !story.may_end;
+    by_id("end").disabled = state === "lost" || state === "ended" || state === "gone" || !story.may_end;
   };
   const ask = async () => {
     let wait = kEvery;
@@ -35,7 +36,10 @@ export function follow(page, source) {
       if (news.frames.length) by_id("lead").textContent = page.lead();
       by_id("time").max = String(Math.max(0, story.frames.length - 1));
       tell(news.state);
-      if (news.frames.length && by_id("follow").checked && !page.playing) await page.show(story.frames.length - 1);
+      if (news.frames.length && by_id("follow").checked && !page.playing) {
+        // On a full disk a newer frame may have taken its place since: the next news has that.
+        await page.show(story.frames.length - 1).catch((error) => { if (error.status !== 404) throw error; });
+      }
       // The whole run, with its curves and warnings, is another story.
       if (news.state === "ended" && news.whole) return window.location.reload();
       if (news.state === "ended") wait = kAway;  // its directory may still be on its way

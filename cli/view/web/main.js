@@ -109,17 +109,16 @@ class Page {
     return this.busy;
   }
   async fetch_frame(frame) {
-    const {head, frames} = this.story, {lower, extent} = frames[frame];
+    const {head, frames} = this.story, {step, time, lower, extent} = frames[frame];
     const places = array_of(head.blocks[0], await source.block(frame, 0));
     if (!this.stage) {
-      this.stage = new Stage(by_id("canvas"), head, {lower, extent});
+      this.stage = new Stage(by_id("canvas"), head, {step, lower, extent});
       this.cut();
     }
-    this.stage.show(places, {lower, extent});
+    this.stage.show(places, {step, lower, extent});
     this.frame = frame;
     await this.recolour();
     await this.tell_chosen();
-    const {step, time} = frames[frame];
     by_id("time").max = String(frames.length - 1);
     by_id("time").value = String(frame);
     by_id("now").textContent = `frame ${frame + 1} of ${frames.length}, step ${step}${head.static ? "" : ", " + with_unit(time, head.reduced ? "" : "s", 5)}`;

@@ -10,8 +10,15 @@ const kSlow = 1000 / 30;  // ms of a frame, beyond which a moving picture shows 
 const kLeast = 20000;     // particles of such a part
 const kSettles = 200;     // ms
 
+// The box that repeats at a step (model/contract/box_deformation.h).
+function box_at({periodic, deform}, step) {
+  if (!deform) return periodic;
+  const {origin, extent, strain, per_step} = deform;
+  return {origin, extent: extent.map((length, k) => length * (1 + strain[k] + step * per_step[k]))};
+}
+
 export class Stage {
-  // `box`: lower and extent in m of the frame that the camera begins with.
+  // `box`: step, lower and extent in m of the frame that the camera begins with.
   constructor(canvas, head, box) {
     this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: false});
     this.renderer.setClearColor(new Color("#ffffff"));
@@ -29,7 +36,8 @@ export class Stage {
     this.share = 1;
     this.moving = false;
     this.times = [];
-    this.repeats(head.periodic);
+    this.head = head;
+    this.repeats(box_at(head, box.step));
     this.look(this.thin() ?? "corner");
     this.controls.addEventListener("start", () => { this.held = true; this.move(); });
     this.controls.addEventListener("end", () => { this.held = false; this.move(); });
@@ -67,7 +75,8 @@ export class Stage {
   repeats({origin, extent}) {
     if (!extent.some((length) => length > 0)) return;
     const sides = extent.map((length, k) => (length > 0 ? length / this.size : this.extent[k]));
-    const box = new LineSegments(new EdgesGeometry(new BoxGeometry(...sides)), new LineBasicMaterial({color: "#999999"}));
+    if (this.box) this.scene.remove(this.box), this.box.geometry.dispose(), this.box.material.dispose();
+    const box = this.box = new LineSegments(new EdgesGeometry(new BoxGeometry(...sides)), new LineBasicMaterial({color: "#999999"}));
     const low = origin.map((x, k) => (extent[k] > 0 ? x : this.middle[k] - (this.extent[k] * this.size) / 2));
     box.position.fromArray(this.inner(low.map((x, k) => x + (sides[k] * this.size) / 2)));
     this.scene.add(box);
@@ -84,6 +93,7 @@ export class Stage {
   }
 
   show(places, box) {
+    if (this.head.deform) this.repeats(box_at(this.head, box.step));
     this.cloud.place(places, {lower: this.inner(box.lower), extent: box.extent.map((length) => length / this.size)});
   }
   // Particles beyond the plane, at `share` of the body along the axis, are not drawn. No axis: all are.
