@@ -17,8 +17,8 @@ class KeptFiles {
   // Copies what is kept under `key` into `to`. False where there is nothing, or an entry that is not whole.
   bool take(const std::string& key, const std::string& to) const;
 
-  // Keeps copies of these files of `from`, whole or not at all. False: they cannot be kept, and are made again
-  // another time.
+  // Keeps copies of these files of `from`, whole or not at all. False: they cannot be kept, and are made
+  // again another time.
   bool keep(const std::string& key, const std::string& from, const std::vector<std::string>& files) const;
 
   const std::string& directory() const { return directory_; }
