@@ -16,8 +16,8 @@ struct Readings {
   uint64_t energies = 0;  // a multiple of `probes`; 0: first and last only
 };
 
-// Of a run of `steps`, which need not be the scene's: an interval that the file leaves to cuboct follows the
-// steps that are run, and one that the file gives stays.
+// Of a run of `steps`, which need not be the scene's: the scene's intervals. Where these make more than a
+// million readings, what the file leaves to cuboct follows the steps that are run.
 Readings readings_of(const Scene& scene, uint64_t steps);
 
 // Whether [run] of the scene's file, or its stage, has `key`.

@@ -146,7 +146,7 @@ TEST(Check, TellsWhatProbesAreOffBy) {
       std::string::npos);
   with("0.001");
   const std::string machine = bench.cuboct({"check", path, "--machine"}).out;
-  EXPECT_NE(machine.find("strength bits                    20 (by the accuracy of probe 'tension')\n"),
+  EXPECT_NE(machine.find("strength bits                    21 (by the accuracy of probe 'tension')\n"),
             std::string::npos)
       << machine;
   with("1e-6");

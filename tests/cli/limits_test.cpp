@@ -214,7 +214,7 @@ TEST_F(LimitsTest, ListsOfSteps) {
   answer = run(scene, {"--frame-every", "7", "--out", bench_.path("project")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_EQ(answer.err,
-            "--frame-every: every 7 of 1000000000000 steps are 142857142858: at most 10000000 can be kept\n"
+            "--frame-every: every 7 of 1000000000000 steps are 142857142859: at most 10000000 can be kept\n"
             "  hint: --frame-every 300000\n");
   answer = run(scene, {"--hash-every", "1"});
   EXPECT_EQ(answer.code, 2);
