@@ -253,16 +253,15 @@ name = "moisture"
 bonds = "reference"
 reach = "1.2 * pitch"
 stiffness = "8 * spring"
-start.w = "select(inside(left), 1, 0)"
-start.wet = "inside(left)"
 [rule.parameters]
 spring = "20 kN/m"
 diffusivity = "1e-3 m^2/s"
 [rule.particle.w]
 range = [0, 1]
+start = "select(inside(left), 1, 0)"
 [rule.particle.wet]
 kind = "truth"
-start = "false"
+start = "inside(left)"
 [rule.let]
 rate = "diffusivity / (2 * pitch^2)"
 rest = "r0 * (1 + 0.02 * (w_i + w_j) / 2)"
@@ -300,7 +299,7 @@ TEST(ProbeError, RefusesWhatNoFormatsKeep) {
   EXPECT_EQ(
       best,
       "bar.toml:36:12: the stress of probe 'tension' cannot be had within 1e-06: the best that formats do "
-      "is about 2.2e-05\n  hint: accuracy = 2.3e-05, or doubles (--engine reference)");
+      "is about 4.4e-05\n  hint: accuracy = 4.5e-05, or doubles (--engine reference)");
   // Doubles run it.
   EXPECT_GT(scene_plan_of(parse_scene(bar("accuracy = 1e-6"), "bar.toml"), {}, "reference", true).particles,
             0U);
