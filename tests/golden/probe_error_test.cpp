@@ -274,9 +274,9 @@ finish.w = "select(wet, w, w + dt * flow)"
                        "moisture.toml");
   };
   const Scene rubbing = swelling(" + 0.02 kg/s * dot(v_j - v_i, d) / r^2 * d");
-  const Plan plan = plan_of(rubbing, {});
+  const Plan plan = scene_plan_of(rubbing, {}, "lattice", false);
   EXPECT_EQ(plan.rule.widths.relative_velocity_bits, 27);
-  EXPECT_LT(plan_of(swelling(""), {}).rule.widths.relative_velocity_bits, 27);
+  EXPECT_LT(scene_plan_of(swelling(""), {}, "lattice", false).rule.widths.relative_velocity_bits, 27);
   emu::LatticeRun request;
   request.steps = request.hash_every = rubbing.steps;
   request.engine.threads = 1;
