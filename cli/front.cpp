@@ -153,7 +153,8 @@ int main_of(const std::vector<std::string>& given, bool as_json, std::span<const
     check_words(app.text(), words);
     if (const auto asked = app.parse(words)) fmt::print("{}", *asked);
   } catch (const WrongWords& error) {
-    return tell(InputError(error.what(), usage_hint(app.text(), words[0])), as_json, 2);
+    const std::string said = error.what();  // an option that is named needs no more
+    return tell(InputError(said, said.starts_with("-") ? "" : usage_hint(app.text(), words[0])), as_json, 2);
   } catch (const InputError& error) {
     return tell(error, as_json, 2);
   } catch (const Failed& failed) {

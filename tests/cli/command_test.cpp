@@ -17,12 +17,12 @@ TEST(Command, RefusesUnknownWordsWithTheNearestSpelling) {
       "no command\n  hint: one of new, check, run, crosscheck, emit, synth, energy, boards, elastic, "
       "multiscale, explore, "
       "fit, learn, pitch, stability, bench, "
-      "curves, measure, state, picture or report; see 'cuboct --help'\n");
+      "curves, measure, state, picture, view or report; see 'cuboct --help'\n");
   expect_refusal({"chek"}, "unknown command 'chek'\n  hint: did you mean 'check'?\n");
   expect_refusal({"simulate"},
                  "unknown command 'simulate'\n  hint: one of new, check, run, crosscheck, emit, synth, "
                  "energy, boards, elastic, multiscale, explore, "
-                 "fit, learn, pitch, stability, bench, curves, measure, state, picture or report\n");
+                 "fit, learn, pitch, stability, bench, curves, measure, state, picture, view or report\n");
   expect_refusal({"--verbose"}, "unknown option '--verbose'\n  hint: see 'cuboct --help'\n");
   expect_refusal({"run", "scenes/lj_block.toml", "--stepz", "3"},
                  "unknown option '--stepz' of 'cuboct run'\n  hint: did you mean '--steps'?\n");

@@ -101,7 +101,7 @@ TEST(Json, ErrorsHaveTheirPlace) {
   EXPECT_TRUE(error["file"].is_null() && error["line"].is_null() && error["column"].is_null());
   error = error_of({"run", "scenes/lj_block.toml", "--json", "--steps", "many"});  // of the parser
   EXPECT_NE(error["message"].get<std::string>().find("'many'"), std::string::npos) << error;
-  EXPECT_EQ(error["hint"], "usage: cuboct run [OPTIONS] SCENE");
+  EXPECT_TRUE(error["hint"].is_null());
 }
 
 TEST(Json, ListsAreJsonWhereAsked) {
