@@ -306,10 +306,9 @@ TEST(Run, LeavesTheFramesThatAreAskedFor) {
                 .code,
             0);
   EXPECT_FALSE(fs::exists(bench.path("lammps/frames.dump.gz")));
-  for (const auto& [formats, text] : {std::pair{"pdb",
-                                                "--frames: pdb not in {xyz,xyz.gz,ase,vtp,lammps,none}\n  "
-                                                "hint: usage: cuboct run [OPTIONS] SCENE\n"},
-                                      {"none,xyz", "--frames: none goes with no other format\n"}}) {
+  for (const auto& [formats, text] :
+       {std::pair{"pdb", "--frames: pdb not in {xyz,xyz.gz,ase,vtp,lammps,none}\n"},
+        {"none,xyz", "--frames: none goes with no other format\n"}}) {
     const Answer answer =
         bench.cuboct({"run", "scenes/coupon.toml", "--frames", formats, "--out", bench.path("out_dir")});
     EXPECT_EQ(answer.code, 2);
