@@ -19,9 +19,8 @@ struct StepsTogether {
 
   // Of one particle, by its lanes; all lanes of a warp come, those of no particle with `there` false. Gives
   // the particle's part of the state's hash after the step, where hashes are wanted, in its first lane.
-  template <class Lanes>
   CUBOCT_DEVICE uint64_t operator()(uint32_t index, bool there, const void* cache, uint32_t number,
-                                    const Lanes& lanes) const {
+                                    const PairLanes& lanes) const {
     const bool back = number % 2 == 0;
     const ParticlesView<Policy>&from = back ? step.to : step.from, &to = back ? step.from : step.to;
     const uint32_t i = there ? index : 0;
@@ -39,19 +38,18 @@ struct StepsTogether {
  private:
   static constexpr int kRounds = Policy::kFixed ? 2 : 3;  // pairs that a lane has at a time
 
-  template <class Lanes>
-  CUBOCT_DEVICE void share(uint32_t i, bool there, Pairs<Policy, Variant>& pairs, const Lanes& lanes) const {
+  CUBOCT_DEVICE void share(uint32_t i, bool there, Pairs<Policy, Variant>& pairs, const PairLanes& lanes) const {
     const List& list = step.list;
     const uint32_t near_ones = there ? list.near(i) : 0, all = near_ones + (there ? list.further(i) : 0),
                    gap = there ? list.first_row(i) - near_ones : 0, most = lanes.most_of_warp(all);
-    for (uint32_t first = 0; first < most; first += kRounds * Lanes::kCount) {
+    for (uint32_t first = 0; first < most; first += kRounds * PairLanes::kCount) {
       uint32_t entry[kRounds];
       typename Policy::Position other[kRounds];
       typename Policy::Velocity w[kRounds];
       typename Policy::Part part[kRounds];
       CUBOCT_UNROLL
       for (int r = 0; r < kRounds; ++r) {
-        const uint32_t k = first + r * Lanes::kCount + lanes.lane;
+        const uint32_t k = first + r * PairLanes::kCount + lanes.lane;
         entry[r] = k < all ? list.entries[(k < near_ones ? k : k + gap) * list.stride + i] : kNever;
       }
       CUBOCT_UNROLL
@@ -77,7 +75,7 @@ struct StepsTogether {
           Policy::add(part[r], pairs.sum);  // in any order
         } else {
           CUBOCT_UNROLL
-          for (int lane = 0; lane < Lanes::kCount; ++lane) Policy::add(lanes.from(part[r], lane), pairs.sum);
+          for (int lane = 0; lane < PairLanes::kCount; ++lane) Policy::add(lanes.from(part[r], lane), pairs.sum);
         }
     }
     if constexpr (Policy::kFixed)

@@ -54,12 +54,10 @@ Asked Meter::asked(const Parts& parts, bool look, uint64_t step) {
 
 void Meter::add(const Reading& reading, const Parts& parts) {
   if (parts.probes && !probes_.curves().empty()) {
-    // Between load steps the body stands in the box of the last one.
-    const uint64_t of_box = reading.step - (scene_.loading ? reading.step % scene_.loading->every : 0);
-    const Periodic box = scene_.box_at(of_box);
+    const Periodic box = scene_.box_at(reading.step);
     probes_.set_box(box);
     probes_.add({reading.step, reading.x, reading.force, reading.v, reading.fields, reading.stress_volume,
-                 box.extent.prod(), scene_.deform ? scene_.deform->strain_at(of_box) : Vec3::Zero()});
+                 box.extent.prod(), scene_.deform ? scene_.deform->strain_at(reading.step) : Vec3::Zero()});
   }
   if (parts.energies) energy_.add(reading.step, reading.energies, reading.stress);
 }

@@ -11,14 +11,16 @@
 
 namespace cuboct {
 
-// Along each periodic axis L(n) = L0 (1 + strain + n per_step), with L0 of `packed`. The box's origin stays.
+// Along each periodic axis L(n) = L0 (1 + strain + n per_step), with L0 of `packed` and n the last step of the
+// load that is not beyond the step asked for: a static load stands still between two. The box's origin stays.
 struct BoxDeformation {
   Periodic packed;
   Vec3 strain = Vec3::Zero();    // 1, of step 0
   Vec3 per_step = Vec3::Zero();  // 1
+  uint64_t every = 1;            // steps of the run that a step of the load takes
 
   bool moves() const { return !per_step.isZero(0); }
-  Vec3 strain_at(uint64_t step) const { return strain + static_cast<double>(step) * per_step; }
+  Vec3 strain_at(uint64_t step) const { return strain + static_cast<double>(step - step % every) * per_step; }
   Periodic at(uint64_t step) const {
     Periodic box = packed;
     box.extent = box.extent.cwiseProduct(Vec3::Ones() + strain_at(step));

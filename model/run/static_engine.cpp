@@ -58,7 +58,7 @@ StaticEngine::StaticEngine(const Scene& scene, const Body& body, int threads, do
       cell_edge_(cell_edge),
       step_(step),
       // The body stands in the box of the last load step.
-      balance_(scene.rule, body, scene.box_at(step - step % scene.loading->every), threads) {
+      balance_(scene.rule, body, scene.box_at(step), threads) {
   const size_t n = body.size(), anchors = balance_.body().u.size();
   const size_t before = own.size() > kHeadWords ? own[6] : 0;
   if (own.size() < kHeadWords || (before != 0 && before != n) ||

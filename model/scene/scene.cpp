@@ -149,6 +149,12 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
   return limits;
 }
 
+// The table that says how long the run is: the stage's keys replace those of [run].
+const ConfigTable& timed(const ConfigTable& run, const StagePart* stage) {
+  if (stage && (stage->has("steps") || stage->has("duration"))) return *stage;
+  return run;
+}
+
 void read_length(const ConfigTable& table, Scene& scene) {
   if (table.has("duration")) {
     const double steps =
@@ -161,10 +167,7 @@ void read_length(const ConfigTable& table, Scene& scene) {
 }
 
 // s, as the keys say it, of time steps of `dt`.
-double length_of_run(const ConfigTable& run, const StagePart* stage, double dt) {
-  const ConfigTable& table = stage && (stage->has("steps") || stage->has("duration"))
-                                 ? static_cast<const ConfigTable&>(*stage)
-                                 : run;
+double length_of_run(const ConfigTable& table, double dt) {
   if (table.has("duration")) return table.number("duration", quantity::time, Range::positive());
   return static_cast<double>(table.at("steps").integer(0, INT64_MAX)) * dt;
 }
@@ -228,7 +231,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, S
     }
     const double longest =
         automatic ? limits.automatic.known() : dt->number(quantity::time, Range::positive());
-    meet_strained_box(scene, length_of_run(run, stage, longest), limits);
+    meet_strained_box(scene, length_of_run(timed(run, stage), longest), limits);
   }
   TimeLimit limit = automatic ? limits.automatic : limits.given;
   std::string unknown;
@@ -260,7 +263,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, S
 
   for (const ConfigTable* table : {&run, static_cast<const ConfigTable*>(stage)})
     if (table) table->not_both("steps", "duration");
-  read_length(stage && (stage->has("steps") || stage->has("duration")) ? *stage : run, scene);
+  read_length(timed(run, stage), scene);
   const uint64_t whole = scene.steps, parts = stage ? stage->parts() : 1;
   scene.steps = (whole + parts - 1) / parts;
   const auto given = [&](const char* key) {

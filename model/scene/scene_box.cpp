@@ -97,6 +97,7 @@ void set_box(Scene& scene, const Vec3& strain) {
   }
   for (int axis = 0; axis < 3; ++axis)
     if (!(deform.packed.extent[axis] > 0)) deform.per_step[axis] = 0;
+  if (scene.loading) deform.every = scene.loading->every;
   scene.deform = deform;
   scene.periodic = deform.at(0);
 }

@@ -9,6 +9,7 @@
 #include "emu/gpu/real/real_tables.h"
 #include "model/base/error.h"
 #include "tests/gpu/laws.h"
+#include "tests/gpu/pair_kick.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct::gpu {

@@ -9,6 +9,7 @@
 #include "model/analysis/measure.h"
 #include "model/real/reference.h"
 #include "tests/gpu/laws.h"
+#include "tests/gpu/pair_kick.h"
 
 namespace cuboct::gpu {
 namespace {

@@ -84,10 +84,10 @@ TEST_F(View, RefusesAPageThatIsTooLarge) {
                                      "--quiet", "--frames", "none", "--out", path("large")});
   ASSERT_EQ(ran.code, 0) << ran.err;
   std::ofstream(path("old.html")) << "old";
-  const Answer answer = view({path("large"), "--limit", "1", "--save", path("old.html")});
+  const Answer answer = view({path("large"), "--limit", "2", "--save", path("old.html")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_TRUE(answer.err.starts_with("the page would take some ")) << answer.err;
-  EXPECT_NE(answer.err.find(" MB, above the 1 MB of --limit: 21 frames of "), std::string::npos)
+  EXPECT_NE(answer.err.find(" MB, above the 2 MB of --limit: 21 frames of "), std::string::npos)
       << answer.err;
   EXPECT_TRUE(contents(path("old.html")) == "old");
   // Each option that the hint names does.
@@ -96,16 +96,16 @@ TEST_F(View, RefusesAPageThatIsTooLarge) {
     std::smatch found;
     ASSERT_TRUE(std::regex_search(hint, found, std::regex(option + " ([0-9]+)"))) << option << " in " << hint;
     std::vector<std::string> words{path("large"), option, found[1]};
-    if (option != "--limit") words.insert(words.end(), {"--limit", "1"});
+    if (option != "--limit") words.insert(words.end(), {"--limit", "2"});
     const std::string page = saved(words);
-    EXPECT_LE(page.size(), option == "--limit" ? 1000000 * std::stoul(found[1]) : 1000000U) << option;
+    EXPECT_LE(page.size(), option == "--limit" ? 1000000 * std::stoul(found[1]) : 2000000U) << option;
   }
   // That of a part is of the run's frames, not of the part's.
-  const Answer part = view({path("large"), "--every", "2", "--limit", "1", "--save", path("old.html")});
+  const Answer part = view({path("large"), "--every", "2", "--limit", "2", "--save", path("old.html")});
   std::smatch found;
   ASSERT_TRUE(std::regex_search(part.err, found, std::regex("--every ([0-9]+)"))) << part.err;
   EXPECT_GT(std::stoul(found[1]), 2U);
-  saved({path("large"), "--every", found[1], "--limit", "1"});
+  saved({path("large"), "--every", found[1], "--limit", "2"});
 }
 
 TEST_F(View, RefusesOptionsThatDoNothing) {

@@ -382,9 +382,15 @@ bool go_on_together(Stream& stream, uint32_t end, int block, const void* cache, 
   const auto* from = static_cast<const uint32_t*>(cache);
   auto count = static_cast<uint32_t>(words);
   void* arguments[] = {&end, &from, &count, &steps, &met, &sums, const_cast<F*>(&f)};
-  check(cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks),
-                                    dim3(static_cast<unsigned>(block)), arguments, words * 4, stream.get()),
-        "start a kernel");
+  const cudaError_t error =
+      cudaLaunchCooperativeKernel(reinterpret_cast<const void*>(kernel), dim3(blocks),
+                                  dim3(static_cast<unsigned>(block)), arguments, words * 4, stream.get());
+  // A device that others share may hold fewer blocks than it says.
+  if (error == cudaErrorCooperativeLaunchTooLarge || error == cudaErrorNotSupported) {
+    (void)cudaGetLastError();
+    return false;
+  }
+  check(error, "start a kernel");
   return true;
 }
 // Calls f(index, block, memory), a block of threads and `bytes` of its memory each.

@@ -62,7 +62,7 @@ struct RealLaw {
 // is the law too; of several laws (LawKind::several) it has the shortest core, and `laws` are them.
 template <class Real>
 struct RealRule : RealLaw<Real> {
-  bool damped = false, scaled = false;  // the template arguments of add_pair_kick
+  bool damped = false, scaled = false;  // the template arguments of pair_factor
   bool pd = false;                      // some type has a u
   bool constrained = false;             // some type has anything set: imposed axes, PD, gravity, weight
   int type_count = 1;
@@ -262,15 +262,6 @@ CUBOCT_HD bool pair_factor(const RealRule<Real>& rule, const Real* cache, const 
 template <class Real>
 CUBOCT_HD void add_kick(Real factor, const Real d[3], Real sum[3]) {
   for (int a = 0; a < 3; ++a) sum[a] -= factor * d[a];
-}
-// Adds it to `sum`.
-template <LawKind kKind, bool kDamped, bool kScaled, class Roots = FastRoots, class Real>
-CUBOCT_HD bool add_pair_kick(const RealRule<Real>& rule, const Real* cache, const Real d[3], const Real w[3],
-                             int type_i, int type_j, Real sum[3]) {
-  Real factor;
-  const bool inside = pair_factor<kKind, kDamped, kScaled, Roots>(rule, cache, d, w, type_i, type_j, factor);
-  add_kick(factor, d, sum);
-  return inside;
 }
 
 // What a step adds to v[axis] of a particle whose axis is not imposed; u is read only where its type has PD.
