@@ -160,6 +160,14 @@ std::string without_place(const std::string& text) {
   return placed ? text.substr(at + 2) : text;
 }
 
+// The same of a hint that names a line there.
+std::string without_line(std::string hint) {
+  const size_t has = hint.find(" has the key");
+  if (has == std::string::npos) return hint;
+  const size_t line = hint.rfind("line ", has);
+  return line == std::string::npos ? hint : hint.replace(line, has - line, "the value");
+}
+
 void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
   Settings settings;
   set(settings);
@@ -167,7 +175,7 @@ void try_alone(const ConfigValue& value, const Set& set, const Base& base) {
     resolve(base, settings);
   } catch (const InputError& error) {
     const ErrorParts parts = parts_of(error);
-    value.fail(without_place(parts.message), parts.hint);
+    value.fail(without_place(parts.message), without_line(parts.hint));
   }
 }
 
