@@ -80,14 +80,14 @@ TEST_F(View, SaysWhatItLeavesOut) {
 
 // Nothing is written, and the page of before stays.
 TEST_F(View, RefusesAPageThatIsTooLarge) {
-  const Answer ran = bench_->cuboct({"run", "scenes/coupon.toml", "--steps", "20", "--frame-every", "1",
+  const Answer ran = bench_->cuboct({"run", "scenes/coupon.toml", "--steps", "60", "--frame-every", "1",
                                      "--quiet", "--frames", "none", "--out", path("large")});
   ASSERT_EQ(ran.code, 0) << ran.err;
   std::ofstream(path("old.html")) << "old";
   const Answer answer = view({path("large"), "--limit", "2", "--save", path("old.html")});
   EXPECT_EQ(answer.code, 2);
   EXPECT_TRUE(answer.err.starts_with("the page would take some ")) << answer.err;
-  EXPECT_NE(answer.err.find(" MB, above the 2 MB of --limit: 21 frames of "), std::string::npos)
+  EXPECT_NE(answer.err.find(" MB, above the 2 MB of --limit: 61 frames of "), std::string::npos)
       << answer.err;
   EXPECT_TRUE(contents(path("old.html")) == "old");
   // Each option that the hint names does.
