@@ -42,7 +42,9 @@ module cuboct_cull #(
       end_q   <= end_d;
     end
   end
-  cuboct_delay #(.Bits(HaloBits), .Depth(3)) u_halo (.clk_i, .d_i(halo_i), .q_o(halo_o));
+  cuboct_hold #(.Bits(HaloBits), .Depth(3), .Interval(1)) u_halo (
+    .clk_i, .valid_i({valid_q, valid_i}), .d_i(halo_i), .q_o(halo_o)
+  );
 
   // 1: the record. 2: its distances from the box. 3: the tests.
   logic [Axes*(FilterFrac+2)-1:0] x_q;
@@ -64,12 +66,12 @@ module cuboct_cull #(
     .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree)
   ) u_planar (.test_i(!none_2_q), .size_i(size_q), .near_o(near));
   always_ff @(posedge clk_i) begin
-    x_q       <= x_i;
-    size_q    <= size_d;
+    if (valid_i) x_q <= x_i;
+    if (valid_q[0]) size_q <= size_d;
+    if (valid_q[1]) near_q <= near;
     known_2_q <= run_i;
     none_2_q  <= empty_i;
     known_3_q <= known_2_q;
-    near_q    <= near;
   end
 
   assign valid_o = valid_q[2] && (!known_3_q || near_q == '1);

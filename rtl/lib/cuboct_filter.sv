@@ -74,18 +74,26 @@ module cuboct_filter #(
     if (!rst_ni) valid_q <= '0;
     else valid_q <= valid_d;
   end
+  logic [3:1] load;  // F1 ... F3 take what the register before them holds
+  assign load = valid_q[2:0] & {3{!stall_o}};
   always_ff @(posedge clk_i) begin
     if (!stall_o) begin
       f0_row_q       <= row_i;
       f0_own_q       <= own_i;
       f0_slot_q      <= slot_i;
+    end
+    if (load[1]) begin
       f1_row_q       <= f0_row_q;
       f1_test_q      <= test;
       f1_candidate_q <= candidate_i;
       f1_row_data_q  <= row_data_i;
+    end
+    if (load[2]) begin
       f2_row_q       <= f1_row_q;
       f2_test_q      <= f1_test_q;
       f2_candidate_q <= f1_candidate_q;
+    end
+    if (load[3]) begin
       f3_row_q       <= f2_row_q;
       f3_mask_q      <= mask;
       f3_candidate_q <= f2_candidate_q;
@@ -112,7 +120,7 @@ module cuboct_filter #(
         assign met_d[k] = (f1_row_data_q[l*LaneBits+k*IdBits +: IdBits] == f1_candidate_q[IdLsb +: IdBits]);
       end
       always_ff @(posedge clk_i) begin
-        if (!stall_o) met_q <= met_d;
+        if (load[2]) met_q <= met_d;
       end
       assign mask[l] = f2_test_q[l] && (met_q != '0);
     end else begin : gen_planar
@@ -122,7 +130,7 @@ module cuboct_filter #(
         .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
         .Registered(1)
       ) u_lane (
-        .clk_i, .en_i(!stall_o), .test_i(f2_test_q[l]), .own_i(f1_row_data_q[l*Axes*FilterFrac +: Axes*FilterFrac]),
+        .clk_i, .en_i(load[2]), .test_i(f2_test_q[l]), .own_i(f1_row_data_q[l*Axes*FilterFrac +: Axes*FilterFrac]),
         .candidate_i(coarse), .near_o(near)
       );
     end

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What belongs to a pair, Depth cycles later, where pairs come at least Interval cycles after one another and the input
-// stays for Interval cycles: a register per Interval then does what a chain of Depth would. With Interval 1 it is that
-// chain.
+// stays for Interval cycles: a register per Interval then does what a chain of Depth would. Registers load with pairs
+// alone, so that their clock can rest between.
 module cuboct_hold #(
   parameter int Bits     = 8,  // >= 1
   parameter int Depth    = 1,  // cycles, >= 0
@@ -17,8 +17,10 @@ module cuboct_hold #(
   localparam int Registers = Depth / Interval;
   logic unused_valid;
   assign unused_valid = ^valid_i;
-  if (Interval == 1 || Registers == 0) begin : gen_chain
-    cuboct_delay #(.Bits(Bits), .Depth(Registers)) u_delay (.clk_i, .d_i, .q_o);
+  if (Registers == 0) begin : gen_wire
+    logic unused_clk;
+    assign unused_clk = clk_i;
+    assign q_o = d_i;
   end else begin : gen_hold
     logic [(Registers+1)*Bits-1:0] stages;
     assign stages[Bits-1:0] = d_i;

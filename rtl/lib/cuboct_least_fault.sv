@@ -60,7 +60,9 @@ module cuboct_least_fault #(
       if (!rst_ni) late_q[n] <= 1'b0;
       else late_q[n] <= all;
     end
-    always_ff @(posedge clk_i) late_key_q[n*KeyBits +: KeyBits] <= all_key;
+    always_ff @(posedge clk_i) begin
+      if (all) late_key_q[n*KeyBits +: KeyBits] <= all_key;
+    end
   end
 
   // Bit by bit: tools that build it from a carry chain take the chain's end to come early, and put the choices behind.

@@ -30,8 +30,7 @@ module cuboct_link_tx #(
     else valid_q <= valid_d;
   end
   always_ff @(posedge clk_i) begin
-    // Whatever it holds while no beat waits, no one takes it.
-    if (can_load_o) begin
+    if (load_i) begin
       end_q  <= end_i;
       data_q <= data_i;
     end

@@ -91,7 +91,7 @@ module cuboct_pair_finder #(
       else if (!stall) present_q <= present;
     end
     always_ff @(posedge clk_i) begin
-      if (!stall) begin
+      if (read_o) begin
         pick_q     <= pick;
         row_q      <= row;
         slot_q     <= slot_o;
@@ -160,8 +160,9 @@ module cuboct_pair_finder #(
 
   assign stall_o   = stall;
   assign present_o = present;
-  // Whatever they answer where no candidate is asked for, the filter does not take it; a stall is known earlier.
-  assign read_o    = !stall;
+  // Whatever they answer where no candidate is asked for, the filter does not take it; a stall, the phase and the
+  // particles are known earlier.
+  assign read_o    = run_i && own_count_i != '0 && !stall;
   assign row_o     = row;
   assign done_o = past && !read_busy && !filter_busy && empty && !issue_busy;
   logic unused_own;

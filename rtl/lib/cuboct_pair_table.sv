@@ -59,9 +59,11 @@ module cuboct_pair_table #(
     logic [R2Bits-1:0]     r2_q;
     logic                  below_q;
     always_ff @(posedge clk_i) begin
-      octave_q <= leading_one(r2_i);
-      r2_q     <= r2_i;
-      below_q  <= (r2_i[R2Bits-1:FirstOctave] == '0);
+      if (valid_i[0]) begin
+        octave_q <= leading_one(r2_i);
+        r2_q     <= r2_i;
+        below_q  <= (r2_i[R2Bits-1:FirstOctave] == '0);
+      end
     end
 
     // The leading one goes to the top bit, so that index and t stand at fixed places below it.
@@ -85,24 +87,28 @@ module cuboct_pair_table #(
   end else begin : gen_uniform
     logic [IndexBits+FractionBits-1:0] both_d, both_q;
     assign both_d = r2_i[R2Bits-1 -: IndexBits+FractionBits];
-    cuboct_delay #(.Bits(IndexBits + FractionBits), .Depth(OctaveStage)) u_align (
-      .clk_i, .d_i(both_d), .q_o(both_q)
+    cuboct_hold #(.Bits(IndexBits + FractionBits), .Depth(OctaveStage), .Interval(1)) u_align (
+      .clk_i, .valid_i(valid_i[OctaveStage:0]), .d_i(both_d), .q_o(both_q)
     );
     assign index_d = both_q[FractionBits +: IndexBits];
     assign t_d     = both_q[FractionBits-1:0];
     logic unused_r2;
     assign unused_r2 = ^r2_i;
   end
-  always_ff @(posedge clk_i) t_q <= t_d;
+  always_ff @(posedge clk_i) begin
+    if (valid_i[OctaveStage]) t_q <= t_d;
+  end
   // A pair in each cycle: the register stands behind the memory, as a product that waits for a block's read would be
   // the longest path. With pairs further apart the entry needs no register, and the index is shorter.
   logic signed [EntryBits-1:0] c0_read, c1_read, c2_read;
   if (Interval == 1) begin : gen_entry
     logic signed [EntryBits-1:0] c0_q, c1_q, c2_q;
     always_ff @(posedge clk_i) begin
-      c0_q <= c0_i;
-      c1_q <= c1_i;
-      c2_q <= c2_i;
+      if (valid_i[OctaveStage+1]) begin
+        c0_q <= c0_i;
+        c1_q <= c1_i;
+        c2_q <= c2_i;
+      end
     end
     assign index_o = index_d;
     assign c0_read = c0_q;
@@ -110,7 +116,9 @@ module cuboct_pair_table #(
     assign c2_read = c2_q;
   end else begin : gen_index
     logic [IndexBits-1:0] index_q;
-    always_ff @(posedge clk_i) index_q <= index_d;
+    always_ff @(posedge clk_i) begin
+      if (valid_i[OctaveStage]) index_q <= index_d;
+    end
     assign index_o = index_q;
     assign c0_read = c0_i;
     assign c1_read = c1_i;

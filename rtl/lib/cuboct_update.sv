@@ -78,19 +78,31 @@ module cuboct_update #(
     else valid_q <= valid_d;
   end
   assign valid_o = valid_q[VStage];
+  logic [Told:0] at;  // [k]: a particle taken k cycles ago is there
+  assign at = {valid_q, valid_i};
 
   logic [Axes*PositionFrac-1:0] x_last;
   logic [Axes*Guard-1:0]     residue_last;
   logic [TypeBits-1:0]       type_1;
   localparam int Delay = (Held != 0) ? 0 : 1;  // of what only waits
-  cuboct_delay #(.Bits(SlotBits), .Depth(Delay * VStage)) u_slot (.clk_i, .d_i(slot_i), .q_o(slot_o));
-  cuboct_delay #(.Bits(IdBits), .Depth(Delay * VStage)) u_id (.clk_i, .d_i(id_i), .q_o(id_o));
-  cuboct_delay #(.Bits(Axes*PositionFrac), .Depth(Delay * VStage)) u_x (.clk_i, .d_i(x_i), .q_o(x_last));
-  cuboct_delay #(.Bits(Axes*Guard), .Depth(Delay * VStage)) u_residue (
-    .clk_i, .d_i(residue_i), .q_o(residue_last)
+  cuboct_hold #(.Bits(SlotBits), .Depth(Delay * VStage), .Interval(1)) u_slot (
+    .clk_i, .valid_i(at[Delay * VStage:0]), .d_i(slot_i), .q_o(slot_o)
   );
-  cuboct_delay #(.Bits(TypeBits), .Depth(Delay)) u_type (.clk_i, .d_i(type_i), .q_o(type_1));
-  cuboct_delay #(.Bits(TypeBits), .Depth(Delay * (VStage - 1))) u_type_late (.clk_i, .d_i(type_1), .q_o(type_o));
+  cuboct_hold #(.Bits(IdBits), .Depth(Delay * VStage), .Interval(1)) u_id (
+    .clk_i, .valid_i(at[Delay * VStage:0]), .d_i(id_i), .q_o(id_o)
+  );
+  cuboct_hold #(.Bits(Axes*PositionFrac), .Depth(Delay * VStage), .Interval(1)) u_x (
+    .clk_i, .valid_i(at[Delay * VStage:0]), .d_i(x_i), .q_o(x_last)
+  );
+  cuboct_hold #(.Bits(Axes*Guard), .Depth(Delay * VStage), .Interval(1)) u_residue (
+    .clk_i, .valid_i(at[Delay * VStage:0]), .d_i(residue_i), .q_o(residue_last)
+  );
+  cuboct_hold #(.Bits(TypeBits), .Depth(Delay), .Interval(1)) u_type (
+    .clk_i, .valid_i(at[Delay:0]), .d_i(type_i), .q_o(type_1)
+  );
+  cuboct_hold #(.Bits(TypeBits), .Depth(Delay * (VStage - 1)), .Interval(1)) u_type_late (
+    .clk_i, .valid_i(at[Delay * (VStage - 1) + 1:1]), .d_i(type_1), .q_o(type_o)
+  );
 
   logic [Axes-1:0]              imposed;  // of type_1
   logic [Axes*ConstantBits-1:0] to_go, gravity;
@@ -113,11 +125,11 @@ module cuboct_update #(
     logic                        imposed_1, bad_1;
     logic signed [WideBits-1:0]  dv_wide, g_wide, to_go_wide, v_wide_1;
     logic signed [VelocityBits-1:0] v_1;
-    cuboct_delay #(.Bits(TotalBits), .Depth(Delay)) u_sum (
-      .clk_i, .d_i(sum_i[a*TotalBits +: TotalBits]), .q_o(sum_1)
+    cuboct_hold #(.Bits(TotalBits), .Depth(Delay), .Interval(1)) u_sum (
+      .clk_i, .valid_i(at[Delay:0]), .d_i(sum_i[a*TotalBits +: TotalBits]), .q_o(sum_1)
     );
-    cuboct_delay #(.Bits(VelocityBits), .Depth(Delay)) u_v (
-      .clk_i, .d_i(v_i[a*VelocityBits +: VelocityBits]), .q_o(v_1)
+    cuboct_hold #(.Bits(VelocityBits), .Depth(Delay), .Interval(1)) u_v (
+      .clk_i, .valid_i(at[Delay:0]), .d_i(v_i[a*VelocityBits +: VelocityBits]), .q_o(v_1)
     );
     cuboct_resize #(.InBits(TotalBits), .OutBits(SumBits)) u_dv (.a_i(sum_1), .y_o(dv_1));
     cuboct_resize #(.InBits(SumBits), .OutBits(TotalBits)) u_again (.a_i(dv_1), .y_o(sum_again));
@@ -149,8 +161,10 @@ module cuboct_update #(
       cuboct_round_odd #(.InBits(ProductBits), .Shift(WeightFrac), .OutBits(SumBits)) u_round (
         .a_i(product), .y_o(dv_2)
       );
-      cuboct_delay #(.Bits(SumBits), .Depth(1)) u_dv3 (.clk_i, .d_i(dv_2), .q_o(dv_3));
-      cuboct_delay #(.Bits(WideBits), .Depth(Delay * 2)) u_rest3 (.clk_i, .d_i(v_wide_1 + g_wide), .q_o(rest_3));
+      cuboct_hold #(.Bits(SumBits), .Depth(1), .Interval(1)) u_dv3 (.clk_i, .valid_i(at[3:2]), .d_i(dv_2), .q_o(dv_3));
+      cuboct_hold #(.Bits(WideBits), .Depth(Delay * 2), .Interval(1)) u_rest3 (
+        .clk_i, .valid_i(at[Delay * 2 + 1:1]), .d_i(v_wide_1 + g_wide), .q_o(rest_3)
+      );
       cuboct_resize #(.InBits(SumBits), .OutBits(WideBits)) u_dv3_wide (.a_i(dv_3), .y_o(dv_3_wide));
       assign plain = rest_3 + dv_3_wide;
       logic unused_dv;
@@ -160,8 +174,9 @@ module cuboct_update #(
       logic unused_weight;
       assign unused_weight = ^weight;
     end
-    cuboct_delay #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * (VStage - 2))) u_rest (
-      .clk_i, .d_i({imposed_1, bad_1, sum_1, to_go_wide}), .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
+    cuboct_hold #(.Bits(TotalBits + WideBits + 2), .Depth(Delay * (VStage - 2)), .Interval(1)) u_rest (
+      .clk_i, .valid_i(at[Delay * (VStage - 2) + 1:1]), .d_i({imposed_1, bad_1, sum_1, to_go_wide}),
+      .q_o({imposed_v, bad_sum_v, sum_v, v_imposed})
     );
 
     if (Pd != 0) begin : gen_pd
@@ -187,13 +202,19 @@ module cuboct_update #(
       logic                        held_4;
       logic signed [WideBits-1:0]  plain_4;
       logic                        held_last;
-      cuboct_delay #(.Bits(DisplacementBits), .Depth(Delay * 2)) u_u2 (
-        .clk_i, .d_i(u_i[a*DisplacementBits +: DisplacementBits]), .q_o(u_2)
+      cuboct_hold #(.Bits(DisplacementBits), .Depth(Delay * 2), .Interval(1)) u_u2 (
+        .clk_i, .valid_i(at[Delay * 2:0]), .d_i(u_i[a*DisplacementBits +: DisplacementBits]), .q_o(u_2)
       );
-      cuboct_delay #(.Bits(DisplacementBits), .Depth(Delay * 3)) u_u_last (.clk_i, .d_i(u_2), .q_o(u_last));
+      cuboct_hold #(.Bits(DisplacementBits), .Depth(Delay * 3), .Interval(1)) u_u_last (
+        .clk_i, .valid_i(at[Delay * 3 + 2:2]), .d_i(u_2), .q_o(u_last)
+      );
       cuboct_resize #(.InBits(WideBits), .OutBits(ErrorBits)) u_error (.a_i(v_wide_1 - to_go_wide), .y_o(error_d));
-      cuboct_delay #(.Bits(ErrorBits), .Depth(1)) u_error2 (.clk_i, .d_i(error_d), .q_o(error_2));
-      cuboct_delay #(.Bits(2 * GainBits), .Depth(1)) u_gain2 (.clk_i, .d_i({kd, kp}), .q_o({kd_2, kp_2}));
+      cuboct_hold #(.Bits(ErrorBits), .Depth(1), .Interval(1)) u_error2 (
+        .clk_i, .valid_i(at[2:1]), .d_i(error_d), .q_o(error_2)
+      );
+      cuboct_hold #(.Bits(2 * GainBits), .Depth(1), .Interval(1)) u_gain2 (
+        .clk_i, .valid_i(at[2:1]), .d_i({kd, kp}), .q_o({kd_2, kp_2})
+      );
       cuboct_mult #(.ABits(GainBits), .BBits(DisplacementBits)) u_spring (
         .clk_i, .rst_ni, .en_i(valid_q[2]), .a_i(kp_2), .b_i(u_2), .p_o(spring)
       );
@@ -202,15 +223,19 @@ module cuboct_update #(
       );
       assign pull_sum_d = $signed({{(SpringBits - KpBits) {spring[KpBits-1]}}, spring})
                       + $signed({{(SpringBits - KdBits) {drag[KdBits-1]}}, drag});
-      always_ff @(posedge clk_i) pull_sum_q <= pull_sum_d;
+      always_ff @(posedge clk_i) begin
+        if (valid_q[3]) pull_sum_q <= pull_sum_d;
+      end
       // round_odd and the subtraction in one adder: v - (high + carry) = v + ~high + !carry, as cuboct_round_odd has
       // it; nothing is subtracted where no force holds.
       assign high  = pull_sum_q[SpringBits-1:GainFrac];
       assign carry = pull_sum_q[GainFrac-1] && (!pull_sum_q[SpringBits-1] || pull_sum_q[GainFrac-2:0] != '0);
       cuboct_resize #(.InBits(HighBits), .OutBits(WideBits)) u_high (.a_i(high), .y_o(high_wide));
-      cuboct_delay #(.Bits(1), .Depth(Delay * 3)) u_held4 (.clk_i, .d_i(held), .q_o(held_4));
-      cuboct_delay #(.Bits(WideBits), .Depth(Delay * (VStage - 1 - Kick))) u_plain4 (
-        .clk_i, .d_i(plain), .q_o(plain_4)
+      cuboct_hold #(.Bits(1), .Depth(Delay * 3), .Interval(1)) u_held4 (
+        .clk_i, .valid_i(at[Delay * 3 + 1:1]), .d_i(held), .q_o(held_4)
+      );
+      cuboct_hold #(.Bits(WideBits), .Depth(Delay * (VStage - 1 - Kick)), .Interval(1)) u_plain4 (
+        .clk_i, .valid_i(at[Delay * (VStage - 1 - Kick) + Kick:Kick]), .d_i(plain), .q_o(plain_4)
       );
       assign both   = $signed({plain_4, 1'b1}) + $signed({held_4 ? ~high_wide : '0, held_4 && !carry});
       assign v_free = both[WideBits:1];
@@ -221,8 +246,8 @@ module cuboct_update #(
       logic signed [UBits-1:0]            u_wide, u_full, u_back, v_last, to_go_4, to_go_last;
       logic signed [DisplacementBits-1:0] u_new;
       cuboct_resize #(.InBits(WideBits), .OutBits(UBits)) u_to_go4 (.a_i(v_imposed), .y_o(to_go_4));
-      cuboct_delay #(.Bits(UBits + 1), .Depth(Delay)) u_held_last (
-        .clk_i, .d_i({held_4, to_go_4}), .q_o({held_last, to_go_last})
+      cuboct_hold #(.Bits(UBits + 1), .Depth(Delay), .Interval(1)) u_held_last (
+        .clk_i, .valid_i(at[Delay + VStage - 1:VStage - 1]), .d_i({held_4, to_go_4}), .q_o({held_last, to_go_last})
       );
       cuboct_resize #(.InBits(DisplacementBits), .OutBits(UBits)) u_u_wide (.a_i(u_last), .y_o(u_wide));
       cuboct_resize #(.InBits(VelocityBits), .OutBits(UBits)) u_v_last (
@@ -252,7 +277,9 @@ module cuboct_update #(
     logic signed [TotalBits-1:0]    sum_last;
     localparam int MovedBits = PositionFrac + Guard + 2;
     logic signed [MovedBits-1:0]    drift, moved;
-    cuboct_delay #(.Bits(TotalBits), .Depth(Delay)) u_sum_last (.clk_i, .d_i(sum_v), .q_o(sum_last));
+    cuboct_hold #(.Bits(TotalBits), .Depth(Delay), .Interval(1)) u_sum_last (
+      .clk_i, .valid_i(at[Delay + VStage - 1:VStage - 1]), .d_i(sum_v), .q_o(sum_last)
+    );
     assign v_new_wide = imposed_v ? v_imposed : v_free;
     cuboct_resize #(.InBits(WideBits), .OutBits(VelocityBits)) u_v_new (.a_i(v_new_wide), .y_o(v_new));
     // The check waits for the register: with the sums before it it would be too much for a cycle.
@@ -288,9 +315,15 @@ module cuboct_update #(
   integer                       b;
   assign bad     = {bad_v, bad_u, bad_sum};
   assign numbers = {v_number, u_number, sum_number};
-  cuboct_delay #(.Bits(IdBits), .Depth(Pd)) u_id_told (.clk_i, .d_i(id_o), .q_o(fault_id_o));
-  cuboct_delay #(.Bits(3 * Axes), .Depth(Pd)) u_bad (.clk_i, .d_i(bad), .q_o(bad_told));
-  cuboct_delay #(.Bits(3 * Axes * NumberBits), .Depth(Pd)) u_numbers (.clk_i, .d_i(numbers), .q_o(numbers_told));
+  cuboct_hold #(.Bits(IdBits), .Depth(Pd), .Interval(1)) u_id_told (
+    .clk_i, .valid_i(at[Pd + VStage:VStage]), .d_i(id_o), .q_o(fault_id_o)
+  );
+  cuboct_hold #(.Bits(3 * Axes), .Depth(Pd), .Interval(1)) u_bad (
+    .clk_i, .valid_i(at[Pd + VStage:VStage]), .d_i(bad), .q_o(bad_told)
+  );
+  cuboct_hold #(.Bits(3 * Axes * NumberBits), .Depth(Pd), .Interval(1)) u_numbers (
+    .clk_i, .valid_i(at[Pd + VStage:VStage]), .d_i(numbers), .q_o(numbers_told)
+  );
   assign fault_o = valid_q[Told] && (bad_told != '0);
   always_comb begin
     fault_code_o = (bad_told[0 +: Axes] != '0) ? 4'd3 : (bad_told[Axes +: Axes] != '0) ? 4'd4 : 4'd5;

@@ -12,6 +12,26 @@ LIBRARY = pathlib.Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")
 TOOLS = ("yosys", "iverilog", "vvp", "sta", "mawk")
 LONGEST = 900  # s, of a run of a tool
 PERIOD = 100  # ns; what a clock takes does not depend on it
+# Registers of so many bits and more with one enable have a gate before their clock: a latch, which is open while the clock is low,
+# and an AND. Of fewer a multiplexer holds the value.
+FEWEST = 3
+GATE = "CUBOCT_GATE"
+GATE_CELLS = (("INVX1", "A({CLK}), .Y({n}i)"), ("LATCH", "CLK({n}i), .D({EN}), .Q({n}q)"), ("AND2X2", "A({CLK}), .B({n}q), .Y({GCLK})"))
+GATE_MODEL = f"module {GATE}(input CLK, EN, output GCLK); reg q = 0; always @* if (!CLK) q = EN; assign GCLK = CLK & q; endmodule\n"
+GATE_MAP = f"""(* techmap_celltype = "$dffe" *)
+module gated(CLK, EN, D, Q);
+  parameter WIDTH = 1;
+  parameter CLK_POLARITY = 1;
+  parameter EN_POLARITY = 1;
+  input CLK, EN;
+  input [WIDTH-1:0] D;
+  output [WIDTH-1:0] Q;
+  wire gclk;
+  wire _TECHMAP_FAIL_ = WIDTH < {FEWEST};
+  {GATE} gate (.CLK(CLK), .EN(EN_POLARITY ? EN : ~EN), .GCLK(gclk));
+  \\$dff #(.WIDTH(WIDTH), .CLK_POLARITY(1'b1)) register (.CLK(gclk), .D(D), .Q(Q));
+endmodule
+"""
 
 # Parts of a node by the instance that holds a cell; what is in none is control.
 PARTS = (("pipes", r"\.u_pipe\.|\.u_sums\.|\.gen_total"), ("filter", r"\.u_filter\."), ("cull", r"\.u_cull"),
@@ -61,7 +81,7 @@ def cell_delays(library):
 
 def cell_models(gates, flops, delays):
     """Verilog of the cells: flip-flops begin at 0; values settle in no time, or as late as `delays` says of a cell."""
-    text = ["`timescale 1ns/10ps\n"]
+    text = ["`timescale 1ns/10ps\n", GATE_MODEL]
     late = lambda name: f"#{delays[name]:.2f} " if name in delays else ""
     for name, outputs in gates.items():
         inputs = next(iter(outputs.values()))[1]
@@ -77,13 +97,17 @@ def synthesise(sources, top, out, library=LIBRARY):
     """out/gates.json, out/gates.v: `top` in cells of the library, flat; memories stay."""
     (out / "abc.constr").write_text("set_driving_cell BUFX4\nset_load 0.05 [all_outputs]\n")
     kept = " ".join(f"*{name}*" for name in KEPT)
-    script = "".join(f"read_verilog -sv {source}\n" for source in sources)
+    merge = f"opt_merge -share_all t:{GATE}\n"
+    (out / "gate_map.v").write_text(GATE_MAP)
+    (out / "gate.v").write_text(f"module {GATE}(input CLK, EN, output GCLK); endmodule\n")
+    script = f"read_verilog -lib {out}/gate.v\n" + "".join(f"read_verilog -sv {source}\n" for source in sources)
     # What `synth` does, less memory_map.
     script += (f"hierarchy -check -top {top}\nsetattr -mod -set keep_hierarchy 1 {kept}\nproc\nflatten\nopt_expr\nopt_clean\n"
-               "opt -nodffe -nosdff\nwreduce\npeepopt\nopt_clean\nalumacc\nshare\nopt\nmemory -nomap\nopt_clean\n"
-               "opt -fast -full\nopt -undriven -fine\ntechmap\nopt -fast\nopt_clean\n"
+               "opt -nodffe -nosdff\nwreduce\npeepopt\nopt_clean\nalumacc\nshare\nopt -nosdff\nmemory -nomap\nopt_clean\n"
+               f"opt -fast -full -nosdff\nopt -undriven -fine -nosdff\ntechmap -map {out}/gate_map.v t:$dffe\n{merge}"
+               "techmap\nopt -fast -nodffe -nosdff\nopt_clean\n"
                f"dfflibmap -liberty {library}\nabc -liberty {library} -constr {out}/abc.constr -D 5000\n"
-               "setattr -mod -unset keep_hierarchy *\nflatten\nsplitnets -ports\nopt_clean -purge\nrename -enumerate w:*\n"
+               f"setattr -mod -unset keep_hierarchy *\nflatten\n{merge}splitnets -ports\nopt_clean -purge\nrename -enumerate w:*\n"
                f"write_json {out}/gates.json\nwrite_verilog -noattr {out}/gates.v\n")
     (out / "gates.ys").write_text(script)
     run(["yosys", "-q", "-l", out / "gates.log", "-s", out / "gates.ys"])
@@ -99,7 +123,7 @@ class Netlist:
         for path, cell in module["cells"].items():
             if cell["type"] == "$mem_v2":
                 continue
-            if cell["type"] in self.gates or cell["type"] in self.flops:
+            if cell["type"] in self.gates or cell["type"] in self.flops or cell["type"] == GATE:
                 self.cells.append((path, cell["type"], {pin: bits[0] for pin, bits in cell["connections"].items()}))
             else:
                 raise Mistake(f"{out}/gates.json: a cell {cell['type']} at {path}, of which the library says nothing")
@@ -107,7 +131,12 @@ class Netlist:
         self.ports = {name: (port["direction"], port["bits"][0]) for name, port in module["ports"].items()}
 
     def outputs(self, kind):
-        return [self.flops[kind][2]] if kind in self.flops else list(self.gates[kind])
+        return ["GCLK"] if kind == GATE else [self.flops[kind][2]] if kind in self.flops else list(self.gates[kind])
+
+    def clocks(self, kind, pins, cycles, changes):
+        """So often a cell's clock rises."""
+        net = pins[self.flops[kind][0]] if kind in self.flops else None
+        return cycles if net in (None, self.ports["clk_i"][1]) else changes.get(net, 0) / 2
 
     def part(self, path):
         return next((part for part, pattern in PARTS if re.search(pattern, "." + path.replace("\\", ""))), "control")
@@ -212,11 +241,18 @@ def data_energy(flop, library):
 
 def energies(netlist, out, library=LIBRARY):
     """Of each cell, by OpenSTA: (pJ of a change at its output, pJ of a clock, leakage in pJ of 10 ns). OpenSTA is asked
-    with all nets at rest and with all changing once a clock; the energy of a cell is linear in between."""
+    with all nets at rest and with all changing once a clock; the energy of a cell is linear in between. All registers have
+    the port's own clock: what drives the pins of a clock is the tree's, with gates and without."""
     driven = {pins[pin] for _, kind, pins in netlist.cells for pin in netlist.outputs(kind)}
-    lines = [f"{kind} c{k} ({', '.join(f'.{pin}({net_name(net)})' for pin, net in pins.items())});"
-             for k, (_, kind, pins) in enumerate(netlist.cells)]
     clock = netlist.ports["clk_i"][1]
+    ideal = lambda kind, pin, net: clock if kind in netlist.flops and pin == netlist.flops[kind][0] else net
+    lines = [f"{kind} c{k} ({', '.join(f'.{pin}({net_name(ideal(kind, pin, net))})' for pin, net in pins.items())});"
+             for k, (_, kind, pins) in enumerate(netlist.cells) if kind != GATE]
+    gated = [k for k, (_, kind, _) in enumerate(netlist.cells) if kind == GATE]
+    for k in gated:
+        names = {pin: net_name(net) for pin, net in netlist.cells[k][2].items()}
+        lines += [f"{kind} g{k}_{part} (.{pins.format(n=f'g{k}', **names)});" for part, (kind, pins) in enumerate(GATE_CELLS)]
+    asked_cells = len(netlist.cells) + (len(GATE_CELLS) - 1) * len(gated)
     read = {net for _, _, pins in netlist.cells for net in pins.values() if isinstance(net, int)}
     given = sorted((read | {clock}) - driven)  # by ports and memories
     asked = sorted({net for direction, net in netlist.ports.values() if direction == "output"} & driven)
@@ -233,14 +269,20 @@ def energies(netlist, out, library=LIBRARY):
     (out / "sta.tcl").write_text("\n".join([*script, "exit", ""]))
     still, moving = run(["sta", "-no_splash", "-exit", out / "sta.tcl"]).split("at 1\n")
     def told(printed):  # W times ns are nJ
-        found = {int(k): ((float(internal) + float(switching)) * PERIOD * 1e3, float(leakage) * 1e4)
-                 for internal, switching, leakage, k in re.findall(r"^ *(\S+) +(\S+) +(\S+) +\S+ +c(\d+)$", printed, re.M)}
-        if len(found) != len(netlist.cells):
-            raise Mistake(f"{out}/sta.tcl: OpenSTA tells the power of {len(found)} of {len(netlist.cells)} cells")
-        return [found[k] for k in range(len(netlist.cells))]
+        found = {name: ((float(internal) + float(switching)) * PERIOD * 1e3, float(leakage) * 1e4)
+                 for internal, switching, leakage, name in re.findall(r"^ *(\S+) +(\S+) +(\S+) +\S+ +([cg]\w+)$", printed, re.M)}
+        if len(found) != asked_cells:
+            raise Mistake(f"{out}/sta.tcl: OpenSTA tells the power of {len(found)} of {asked_cells} cells")
+        return found
     within = {flop: data_energy(flop, library) for flop in {kind for _, kind, _ in netlist.cells} & set(netlist.flops)}
-    return [(one - none - within.get(kind, 0), none, leakage)
-            for (_, kind, _), (none, leakage), (one, _) in zip(netlist.cells, told(still), told(moving))]
+    still, moving = told(still), told(moving)
+    def of(k, kind):
+        if kind != GATE:
+            (none, leakage), (one, _) = still[f"c{k}"], moving[f"c{k}"]
+            return one - none - within.get(kind, 0), none, leakage
+        inverter, latch, both = (still[f"g{k}_{part}"] for part in range(len(GATE_CELLS)))
+        return both[0] / 2, inverter[0] + latch[0], inverter[1] + latch[1] + both[1]  # the AND turns with the registers' clock
+    return [of(k, kind) for k, (_, kind, _) in enumerate(netlist.cells)]
 
 
 def power(netlist, energy, changes, library=LIBRARY):

@@ -9,7 +9,8 @@ import gates
 TERMS = {"pairs: products": "pipes", "pairs: adders": "pipes", "pairs: registers": "pipes", "filter: adders": "filter",
          "filter: registers": "filter", "cull: adders": "cull", "cull: registers": "cull", "update: products": "update",
          "update: adders": "update", "update: registers": "update", "links: registers": "links",
-         "clock of registers": "clock"}
+         "clock: pairs": "clock", "clock: filter": "clock", "clock: cull": "clock", "clock: update": "clock", "clock: links": "clock",
+         "clock: gates and control": "clock"}
 LEFT_OUT = r"read |write |links: wires|wires within|leakage|memory of|links$"
 
 
@@ -54,11 +55,14 @@ def measured(work, node, netlist, energy):
     cycles = node["cycles"]
     changes = gates.simulate(netlist, work, f"+lines={len(lines)}", f"+first={first}", f"+cycles={cycles}")
     found = {"clock": 0, "leakage": 0}
-    for (path, kind, _), dynamic, (_, clock, leakage) in zip(netlist.cells, gates.power(netlist, energy, changes), energy):
+    for (path, kind, pins), dynamic, (_, clock, leakage) in zip(netlist.cells, gates.power(netlist, energy, changes), energy):
+        found["clock"] += clock * netlist.clocks(kind, pins, cycles, changes)
+        found["leakage"] += leakage * cycles
+        if kind == gates.GATE:
+            found["clock"] += dynamic
+            continue
         part = found.setdefault(netlist.part(path), {"registers": 0, "gates": 0, "flops": 0, "cells": 0})
         part["registers" if kind in netlist.flops else "gates"] += dynamic
         part["flops"] += kind in netlist.flops
         part["cells"] += 1
-        found["clock"] += clock * cycles
-        found["leakage"] += leakage * cycles
     return found, changes

@@ -40,7 +40,7 @@ std::vector<EnergyRow> rows_of_node(const Plan& plan, const MachineEvents& event
   constexpr double kClock = 1e8;
   Energy energy = energy_of(plan, events, memory_traffic(plan, events), cycles, kClock, technology);
   for (EnergyRow& row : energy.rows)
-    if (row.term == "clock of registers" || row.term.starts_with("leakage")) {
+    if (row.term == "clock: gates and control" || row.term.starts_with("leakage")) {
       row.events /= plan.nodes();
       row.picojoules = (1.0 / plan.nodes()) * row.picojoules;
     }
