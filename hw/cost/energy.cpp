@@ -70,9 +70,18 @@ void add_datapath(Sheet& sheet, const Plan& plan, const MachineEvents& e) {
   const auto rounds = static_cast<double>(plan.rounds.size());
   const auto pairs = static_cast<double>(e.pairs) / rounds, updates = static_cast<double>(e.updates) / rounds,
              tests = static_cast<double>(e.candidates) * plan.arch.filter_lanes;
-  sheet.add("pairs: products", pairs, "pairs", Constant::multiply_bit2, exact(work.pair.bit_products()));
-  sheet.add("pairs: adders", pairs, "pairs", Constant::add_bit, exact(work.pair.adder_bits));
-  sheet.add("pairs: registers", pairs, "pairs", Constant::register_bit, exact(work.pair.register_bits));
+  const Work &pair = work.pair, &kick = work.kick;
+  sheet.add("pairs: products", pairs, "pairs", Constant::multiply_bit2,
+            exact(pair.bit_products() - kick.bit_products()));
+  sheet.add("pairs: adders", pairs, "pairs", Constant::add_bit, exact(pair.adder_bits - kick.adder_bits));
+  sheet.add("pairs: registers", pairs, "pairs", Constant::register_bit,
+            exact(pair.register_bits - kick.register_bits));
+  if (plan.program == nullptr) {
+    const auto kicks = static_cast<double>(e.kicks);
+    sheet.add("kicks: products", kicks, "kicks", Constant::multiply_bit2, exact(kick.bit_products()));
+    sheet.add("kicks: adders", kicks, "kicks", Constant::add_bit, exact(kick.adder_bits));
+    sheet.add("kicks: registers", kicks, "kicks", Constant::register_bit, exact(kick.register_bits));
+  }
   sheet.add("filter: adders", tests, "tests", Constant::add_bit, exact(work.lane.adder_bits));
   sheet.add("filter: registers", tests, "tests", Constant::register_bit, exact(work.lane.register_bits));
   if (e.tested > 0) {
@@ -196,7 +205,8 @@ void add_clock(Sheet& sheet, const Plan& plan, const MachineEvents& e, double cy
   const auto loads = [&](const char* what, uint64_t count, const char* unit, double bits) {
     if (count > 0) sheet.add(what, static_cast<double>(count), unit, Constant::clock_bit, bits * kLoads);
   };
-  loads("clock: pairs", e.pairs, "pairs", work.pair.register_bits);
+  loads("clock: pairs", e.pairs, "pairs", work.pair.register_bits - work.kick.register_bits);
+  loads("clock: kicks", e.kicks, "kicks", work.kick.register_bits);
   loads("clock: filter", e.candidates, "candidates", plan.arch.filter_lanes * work.lane.register_bits);
   loads("clock: cull", e.tested, "records", work.cull.register_bits);
   loads("clock: update", e.updates, "particles", work.update.register_bits);

@@ -25,14 +25,19 @@ int strength(const FixedRule& rule) {
   return rule.damped ? rule.widths.strength_bits : value_bits(rule.force);
 }
 
+// Of a sum of kicks.
+int sum_width(const Plan& plan) {
+  return kick_bits(plan.rule) +
+         static_cast<int>(std::bit_width(27u * static_cast<unsigned>(plan.arch.capacity) - 1));
+}
+
 Work pair_of(const Plan& plan, int axes) {
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const int P = w.position_frac, V = w.velocity_bits, relative = w.relative_velocity_bits;
   const int d = w.difference_frac + 1, r2 = 2 * w.difference_frac + 2;
   const int force = value_bits(rule.force), s = strength(rule), kick = kick_bits(rule);
-  const int sum =
-      kick + static_cast<int>(std::bit_width(27u * static_cast<unsigned>(plan.arch.capacity) - 1));
+  const int sum = sum_width(plan);
   Work work;
   work.products.push_back({d, d, axes});
   add_table(work, rule.force, w.strength_bits);
@@ -59,6 +64,17 @@ Work pair_of(const Plan& plan, int axes) {
   // With registers on both sides of a multiplier those of its operands.
   if (plan.arch.multipliers == Multipliers::parallel && plan.latency.product > 1)
     for (const Product& p : work.products) work.register_bits += p.count * (p.a + p.b);
+  return work;
+}
+
+// The kick's products, their registers, kicks and their addition to a sum.
+Work kick_of(const Plan& plan, int axes) {
+  const FixedRule& rule = plan.rule;
+  const int d = rule.widths.difference_frac + 1, s = strength(rule), kick = kick_bits(rule);
+  Work work;
+  work.products.push_back({s, d, axes});
+  work.adder_bits = axes * (kick + sum_width(plan));
+  work.register_bits = axes * (s + d + kick);
   return work;
 }
 
@@ -143,7 +159,8 @@ DatapathWork datapath_work(const Plan& plan, WorkOf of) {
     if (plan.words.bonds == 0) work.lane = lane_of(plan, axes, of);
     return work;
   }
-  DatapathWork work{pair_of(plan, axes), lane_of(plan, axes, of), update_of(plan, axes), {}};
+  DatapathWork work{pair_of(plan, axes), kick_of(plan, axes), lane_of(plan, axes, of),
+                    update_of(plan, axes), {}};
   if (of == WorkOf::built) work.cull = cull_of(plan, axes, work.lane);
   return work;
 }

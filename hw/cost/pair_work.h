@@ -40,6 +40,7 @@ struct Work {
 
 struct DatapathWork {
   Work pair;    // from the positions of a pair to its kick in a sum
+  Work kick;    // of that what a pair beyond the cutoff leaves out; nothing of rules of text
   Work lane;    // one candidate against one own particle
   Work update;  // of one particle
   Work cull;    // with halos on arrival: of one record, against the box of the own particles

@@ -6,10 +6,11 @@ import bench
 import gates
 
 # The model's terms, by the part of a node whose energy they are. Memories and wires are no gates.
-TERMS = {"pairs: products": "pipes", "pairs: adders": "pipes", "pairs: registers": "pipes", "filter: adders": "filter",
+TERMS = {"pairs: products": "pipes", "pairs: adders": "pipes", "pairs: registers": "pipes",
+         "kicks: products": "pipes", "kicks: adders": "pipes", "kicks: registers": "pipes", "filter: adders": "filter",
          "filter: registers": "filter", "cull: adders": "cull", "cull: registers": "cull", "update: products": "update",
          "update: adders": "update", "update: registers": "update", "links: registers": "links",
-         "clock: pairs": "clock", "clock: filter": "clock", "clock: cull": "clock", "clock: update": "clock", "clock: links": "clock",
+         "clock: pairs": "clock", "clock: kicks": "clock", "clock: filter": "clock", "clock: cull": "clock", "clock: update": "clock", "clock: links": "clock",
          "clock: gates and control": "clock"}
 LEFT_OUT = r"read |write |links: wires|wires within|leakage|memory of|links$"
 

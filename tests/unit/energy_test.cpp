@@ -36,7 +36,7 @@ constexpr double kClock = 1e8;
 MachineEvents events() {
   MachineEvents e;
   e.steps = 5 * block().nodes();
-  e.updates = 2000, e.candidates = 40000, e.entries = 20000, e.issues = 30000, e.pairs = 30000;
+  e.updates = 2000, e.candidates = 40000, e.entries = 20000, e.issues = 30000, e.pairs = 30000, e.kicks = 25000;
   e.relayed = 9000, e.halos_x = 8000, e.beats = 12000;
   return e;
 }
@@ -72,9 +72,14 @@ Technology made() {
 TEST(Energy, TermsByHand) {
   const DatapathWork work = datapath_work(block());
   const Energy e = energy(events(), made());
-  EXPECT_EQ(row(e, "pairs: products").picojoules,
-            (Band{30000 * work.pair.bit_products(), 60000 * work.pair.bit_products()}));
-  EXPECT_EQ(row(e, "pairs: adders").picojoules.low, 30000 * work.pair.adder_bits);
+  // Of the pairs 5000 lie beyond the cutoff: they have no kick.
+  const double squares = work.pair.bit_products() - work.kick.bit_products();
+  EXPECT_GT(squares, 0);
+  EXPECT_EQ(row(e, "pairs: products").picojoules, (Band{30000 * squares, 60000 * squares}));
+  EXPECT_EQ(row(e, "kicks: products").picojoules.low, 25000 * work.kick.bit_products());
+  EXPECT_EQ(row(e, "pairs: adders").picojoules.low, 30000 * (work.pair.adder_bits - work.kick.adder_bits));
+  EXPECT_EQ(row(e, "kicks: adders").picojoules.high, 2 * 25000 * work.kick.adder_bits);
+  EXPECT_EQ(row(e, "kicks: registers").picojoules.low, 25000 * work.kick.register_bits);
   // Eight lanes meet each candidate.
   ASSERT_EQ(block().arch.filter_lanes, 8);
   EXPECT_EQ(row(e, "filter: adders").picojoules.low, 8.0 * 40000 * work.lane.adder_bits);
@@ -85,7 +90,9 @@ TEST(Energy, TermsByHand) {
   EXPECT_EQ(row(e, "links: registers").picojoules.low, 12000.0 * (block().words.link_bits + 1));
   const double nodes = block().nodes();
   // Each load of a register is clocked at least 1.3 times, and of all registers at least 0.12 in every cycle.
-  EXPECT_DOUBLE_EQ(row(e, "clock: pairs").picojoules.low, 1.3 * 30000 * work.pair.register_bits);
+  EXPECT_DOUBLE_EQ(row(e, "clock: pairs").picojoules.low,
+                   1.3 * 30000 * (work.pair.register_bits - work.kick.register_bits));
+  EXPECT_DOUBLE_EQ(row(e, "clock: kicks").picojoules.low, 1.3 * 25000 * work.kick.register_bits);
   EXPECT_DOUBLE_EQ(row(e, "clock: filter").picojoules.low, 1.3 * 8 * 40000 * work.lane.register_bits);
   EXPECT_DOUBLE_EQ(row(e, "clock: update").picojoules.high, 2 * 1.9 * 2000 * work.update.register_bits);
   EXPECT_DOUBLE_EQ(row(e, "clock: links").picojoules.low, 1.3 * 12000 * (block().words.link_bits + 1));
@@ -121,11 +128,12 @@ TEST(Energy, TheSumIsThatOfAllTerms) {
   }
   EXPECT_EQ(e.sum, sum);
   const std::vector<std::string> all{"pairs: products",   "pairs: adders",      "pairs: registers",
+                                     "kicks: products",   "kicks: adders",      "kicks: registers",
                                      "filter: adders",    "filter: registers",  "update: adders",
                                      "update: registers", "read own particles", "write own particles",
                                      "read sums",         "write sums",         "links: registers",
                                      "links: wires",      "wires within nodes", "clock: pairs",
-                                     "clock: filter",     "clock: update",      "clock: links",
+                                     "clock: kicks",      "clock: filter",     "clock: update",      "clock: links",
                                      "clock: gates and control",
                                      "leakage of logic",  "leakage of memories"};
   EXPECT_EQ(terms, all);
@@ -238,7 +246,7 @@ TEST(Energy, SensitivityIsTheSumAtBothEnds) {
   ASSERT_NE(found, bars.end());
   const Energy e = energy(events(), made());
   double adders = 0;  // at 1 pJ/bit
-  for (const char* term : {"pairs: adders", "filter: adders", "update: adders"})
+  for (const char* term : {"pairs: adders", "kicks: adders", "filter: adders", "update: adders"})
     adders += row(e, term).picojoules.low;
   EXPECT_NEAR(found->high - found->low, adders, 1e-9 * e.sum.high);
   for (size_t k = 1; k < bars.size(); ++k)
