@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One link of a node whose rule has several rounds: a sender that cuts records into beats as cuboct_relay and
-// cuboct_migrate do, cuboct_link_tx, a wire that stalls when it likes, cuboct_round_rx. Over any number of steps what was
-// sent is told once, in order, as it was sent, to the round that it is of; so are particles, and so is the end of each
-// stream. A round without records sends its end alone.
+// cuboct_migrate do, cuboct_link_tx, a wire that stalls when it likes, cuboct_round_rx. Over any number of steps what
+// was sent is told once, in order, as it was sent, to the round that it is of; so are particles, and so is the end of
+// each stream. A round without records sends its end alone.
 module round_rx_formal #(
   parameter int LinkBits    = 2,
   parameter int Rounds      = 2,  // 1 ... 3
