@@ -2,17 +2,20 @@
 // cuboct_streamer through any number of steps, with any counts, records that come one by one, when they like, and any
 // stalls: each record of each segment is presented once with each row of own slots, in order; `past` comes
 // after the last one and only when every segment was there. Arrival: a segment's records come one by one, in
-// any cycle, and each is presented only after it came.
+// any cycle, and each is presented only after it came. Rounds: the same records are walked again, as often as one
+// likes, when their segments are available once more.
 module streamer_formal #(
   parameter int Axes        = 2,
   parameter int FilterLanes = 2,
   parameter int AddrBits    = 1,  // a segment holds up to 2^AddrBits records, a node as many particles
-  parameter int Arrival     = 0   // 0, 1
+  parameter int Arrival     = 0,  // 0, 1
+  parameter int Rounds      = 1   // 1, 2: another round may follow
 ) (
   input logic          clk_i,
   input logic          stall_i,
   input logic          begin_i,
   input logic          over_i,
+  input logic          again_i,  // the records that came are met once more
   input logic [2*Axes:0] come_i,   // a record of the segment comes, or its end
   input logic [(2*Axes+1)*(AddrBits+1)-1:0] counts_i
 );
@@ -27,13 +30,14 @@ module streamer_formal #(
 
   // A step: the engine runs from begin to the restart in its last cycle, which comes after `past`. Own
   // particles are there at once; a segment's count is final when it is available.
-  logic                          run_q, past, restart;
+  logic                          run_q, past, restart, again;
   logic [Segments*CountBits-1:0] counts_q;
   assign restart = run_q && past && over_i;
+  assign again   = (Rounds > 1) && again_i;
   always_ff @(posedge clk_i) begin
     if (!running_q) run_q <= 1'b0;
     else run_q <= run_q ? !restart : begin_i;
-    if (!running_q || restart) counts_q <= counts_i;
+    if (!running_q || (restart && !again)) counts_q <= counts_i;
     else if (!run_q && !begin_i) counts_q[0 +: CountBits] <= counts_i[0 +: CountBits];
   end
   integer a;
@@ -59,8 +63,8 @@ module streamer_formal #(
   always_ff @(posedge clk_i) begin
     for (t = 1; t < Segments; t = t + 1) begin
       if (!running_q || restart) begin
-        came_q[t*CountBits +: CountBits] <= '0;
-        complete_q[t]                    <= 1'b0;
+        if (!running_q || !again) came_q[t*CountBits +: CountBits] <= '0;
+        complete_q[t] <= 1'b0;
       end else if (come[t]) begin
         came_q[t*CountBits +: CountBits] <= came_q[t*CountBits +: CountBits] + 1'b1;
       end else if (come_i[t] && came_q[t*CountBits +: CountBits] == counts_q[t*CountBits +: CountBits]) begin
@@ -93,11 +97,12 @@ module streamer_formal #(
   logic [RowBits-1:0]  row;
   logic                present;
   cuboct_streamer #(
-    .Segments(Segments), .Arrival(Arrival), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits),
+    .Segments(Segments), .Arrival(Arrival), .Rounds(Rounds), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits),
     .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .own_i(counts_q[0 +: CountBits]),
-    .complete_i(complete), .came_i(come[Segments-1:1]),
+    .complete_i(complete), .came_i(come[Segments-1:1]), .again_i(again),
+    .counts_i(came_q[Segments*CountBits-1:CountBits]),
     .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
 
@@ -164,8 +169,12 @@ module streamer_formal #(
     moves_q <= running_q && run_q && !stall_i && !past && !waits;
   end
 
-  logic again_q;  // a second step
-  always_ff @(posedge clk_i) again_q <= running_q && (again_q || restart);
+  logic again_q, round_q, rounds_q;  // a second step; a second round; a step with two of them was
+  always_ff @(posedge clk_i) begin
+    again_q  <= running_q && (again_q || restart);
+    round_q  <= running_q && (restart ? again : round_q);
+    rounds_q <= running_q && (rounds_q || (restart && !again && round_q && due_segment_q == Segments[2:0] - 3'd1));
+  end
 
   always_ff @(posedge clk_i) begin
     if (running_q) begin
@@ -181,6 +190,8 @@ module streamer_formal #(
           && due_segment_q == Segments[2:0] - 3'd1);
       c_rows:  cover (present && next_row != '0 && next_record != '0);
       c_again: cover (restart && again_q && due_segment_q != '0);
+      c_round: cover (Rounds == 1 || (rounds_q && round_q && present && segment == Segments[2:0] - 3'd1
+                                      && counts_q[(Segments-1)*CountBits +: CountBits] == Most[CountBits-1:0]));
     end
   end
 endmodule
