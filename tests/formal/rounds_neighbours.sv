@@ -25,9 +25,7 @@ module rounds_neighbours_formal #(
   localparam int Below        = 2 * Axis;      // the face of the second node towards the first
   localparam int Above        = 2 * Axis + 1;  // of the first towards the second
   localparam int SlotBits     = (Capacity > 1) ? $clog2(Capacity) : 1;
-  localparam int AddrBits     = $clog2(3 * Capacity);
-  localparam int CountBits    = AddrBits + 1;
-  localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memories
+  localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memories, at most 15
   localparam int ParticleBits = 6;             // x y away_y id field: 1 1 2 1 1
   localparam int Phases       = 5 * Rounds + 3;
   localparam int First        = 5;             // bits of a record of the first round
@@ -236,7 +234,6 @@ module rounds_neighbours_formal #(
   (* keep *) logic [Faces*Rounds-1:0]  tap_halo_0;        // by face, round: a record comes
   (* keep *) logic [Rounds*Faces-1:0]  tap_halo_end_0, tap_halo_ended_0;  // by round, face: an end comes, has come
   (* keep *) logic [Faces-1:0]         tap_arrival_0, tap_arrival_end_0, tap_full_0;
-  (* keep *) logic [Faces*CountBits-1:0] tap_count_0;     // records of the first round
   (* keep *) logic [(Rounds+1)*Faces-1:0] tap_next_0;     // by face: the stream that comes, a bit each
   (* keep *) logic [Faces-1:0]         tap_load_0;        // by face: a beat is loaded,
   (* keep *) logic                     tap_send_end_0;    // it is an end
@@ -247,6 +244,10 @@ module rounds_neighbours_formal #(
   logic [Faces-1:0]                    all_ended_0;
   logic [3:0]                          round_0, used_0, place_sent_0_q, place_told_0_q;
   logic [2:0]                          step_0_q, done_0_q, all_done_0;
+  // By round, over the link, of this step: records that came; there is no room for the one that comes; an end comes
+  // after more or less of them than came of the first round.
+  logic [4*Rounds-1:0]                 records_0_q;
+  logic [Rounds-1:0]                   over_0, differs_0;
   assign sent_0       = ((tap_sent_0 & tap_round_0) != '0);
   assign come_0       = tap_halo_0[Above*Rounds +: Rounds];
   assign arrives_0    = tap_arrival_0[Above];
@@ -260,6 +261,13 @@ module rounds_neighbours_formal #(
   for (genvar q = 0; q < Rounds; q++) begin : gen_over_0
     assign come_end_0[q] = tap_halo_end_0[q*Faces+Above];
     assign ended_0[q]    = tap_halo_ended_0[q*Faces+Above];
+    assign over_0[q]     = come_0[q] && records_0_q[4*q +: 4] == Room[3:0];
+    assign differs_0[q]  = come_end_0[q] && RecordBits[16*q +: 16] != 16'd0
+                           && records_0_q[4*q +: 4] != records_0_q[3:0];
+    always_ff @(posedge clk_i) begin
+      if (!running_q || tap_cleared_0) records_0_q[4*q +: 4] <= '0;
+      else if (come_0[q]) records_0_q[4*q +: 4] <= records_0_q[4*q +: 4] + 4'd1;
+    end
   end
   assign waits[0] = waiting(tap_state_0, sent_0, tap_migrate_0, axis_empty_0, axis_ended_0, tap_axis_halo_0, idle[0]);
   // What makes it provable: streams are followed where they are sent and where they are told; each place is what the
@@ -294,7 +302,6 @@ module rounds_neighbours_formal #(
   (* keep *) logic [Faces*Rounds-1:0]  tap_halo_1;        // by face, round: a record comes
   (* keep *) logic [Rounds*Faces-1:0]  tap_halo_end_1, tap_halo_ended_1;  // by round, face: an end comes, has come
   (* keep *) logic [Faces-1:0]         tap_arrival_1, tap_arrival_end_1, tap_full_1;
-  (* keep *) logic [Faces*CountBits-1:0] tap_count_1;     // records of the first round
   (* keep *) logic [(Rounds+1)*Faces-1:0] tap_next_1;     // by face: the stream that comes, a bit each
   (* keep *) logic [Faces-1:0]         tap_load_1;        // by face: a beat is loaded,
   (* keep *) logic                     tap_send_end_1;    // it is an end
@@ -305,6 +312,10 @@ module rounds_neighbours_formal #(
   logic [Faces-1:0]                    all_ended_1;
   logic [3:0]                          round_1, used_1, place_sent_1_q, place_told_1_q;
   logic [2:0]                          step_1_q, done_1_q, all_done_1;
+  // By round, over the link, of this step: records that came; there is no room for the one that comes; an end comes
+  // after more or less of them than came of the first round.
+  logic [4*Rounds-1:0]                 records_1_q;
+  logic [Rounds-1:0]                   over_1, differs_1;
   assign sent_1       = ((tap_sent_1 & tap_round_1) != '0);
   assign come_1       = tap_halo_1[Below*Rounds +: Rounds];
   assign arrives_1    = tap_arrival_1[Below];
@@ -318,6 +329,13 @@ module rounds_neighbours_formal #(
   for (genvar q = 0; q < Rounds; q++) begin : gen_over_1
     assign come_end_1[q] = tap_halo_end_1[q*Faces+Below];
     assign ended_1[q]    = tap_halo_ended_1[q*Faces+Below];
+    assign over_1[q]     = come_1[q] && records_1_q[4*q +: 4] == Room[3:0];
+    assign differs_1[q]  = come_end_1[q] && RecordBits[16*q +: 16] != 16'd0
+                           && records_1_q[4*q +: 4] != records_1_q[3:0];
+    always_ff @(posedge clk_i) begin
+      if (!running_q || tap_cleared_1) records_1_q[4*q +: 4] <= '0;
+      else if (come_1[q]) records_1_q[4*q +: 4] <= records_1_q[4*q +: 4] + 4'd1;
+    end
   end
   assign waits[1] = waiting(tap_state_1, sent_1, tap_migrate_1, axis_empty_1, axis_ended_1, tap_axis_halo_1, idle[1]);
   // What makes it provable: streams are followed where they are sent and where they are told; each place is what the
@@ -347,13 +365,15 @@ module rounds_neighbours_formal #(
       if ((come_0 | come_end_0) != '0) a_halo_0: assert (((come_0 | come_end_0) & ended_0) == '0 && !tap_cleared_0
                                                        && !(tap_state_0 == Force && tap_round_0[Rounds-1]));
       if (arrives_0 || arrives_end_0) a_arrival_0: assert (!tap_migrate_ended_0[Above]);
-      if (come_0[0]) a_room_0: assert (tap_count_0[Above*CountBits +: CountBits] != Room[CountBits-1:0]);
+      a_room_0: assert (over_0 == '0);
+      a_same_0: assert (differs_0 == '0);
       if (arrives_0) a_fifo_0: assert (!tap_full_0[Above]);
       // Halos of another round, of the next step and arrivals never meet what is still in use.
       if ((come_1 | come_end_1) != '0) a_halo_1: assert (((come_1 | come_end_1) & ended_1) == '0 && !tap_cleared_1
                                                        && !(tap_state_1 == Force && tap_round_1[Rounds-1]));
       if (arrives_1 || arrives_end_1) a_arrival_1: assert (!tap_migrate_ended_1[Below]);
-      if (come_1[0]) a_room_1: assert (tap_count_1[Below*CountBits +: CountBits] != Room[CountBits-1:0]);
+      a_room_1: assert (over_1 == '0);
+      a_same_1: assert (differs_1 == '0);
       if (arrives_1) a_fifo_1: assert (!tap_full_1[Below]);
       i_sent_0:  assert (place_sent_0_q == place(step_0_q[1:0], sent_of(tap_state_0, round_0, sent_0, tap_migrate_0)));
       i_told_0:  assert (((valid[1] && ends[1]) ? after(place_told_0_q) : place_told_0_q) == place_sent_1_q);
@@ -426,6 +446,7 @@ module rounds_neighbours_formal #(
       c_apart:    cover (apart_q);
       c_waits:    cover (waited_q);
       c_step:     cover (step_0_q == 3'd1 && idle == 2'b11);
+      c_same:     cover (come_end_0[Rounds-1] && records_0_q[3:0] == Capacity[3:0] && step_0_q == 3'd1);
     end
   end
 endmodule
