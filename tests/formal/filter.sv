@@ -2,7 +2,8 @@
 // cuboct_filter with its lanes: each presented candidate reaches the queue once, in order and unchanged, with
 // the mask of the own slots of its row that exist, are not itself and pass the planar test; or not at all if
 // there is none. A full queue stalls it and loses nothing. The memories answer a cycle after the presentation
-// and keep the answer while it stalls. The test is told here by integers.
+// and keep the answer while it stalls. The test is told here by integers. Bonds: instead of the planar test, one of the
+// partners of the slot's row of bonds is the candidate.
 module filter_formal #(
   parameter int Axes            = 2,
   parameter int PositionFrac    = 3,
@@ -10,7 +11,8 @@ module filter_formal #(
   parameter int FilterLanes     = 2,
   parameter int PlanarOne       = 4,
   parameter int PlanarTwo       = 6,
-  parameter int PlanarThree     = 7
+  parameter int PlanarThree     = 7,
+  parameter int Bonds           = 0   // places of a row of bonds
 ) (
   input logic                               clk_i,
   input logic                               present_i,
@@ -21,7 +23,8 @@ module filter_formal #(
   input logic                               full_i,
   input logic                               watch_i       // the watched candidate is the one presented now
 );
-  localparam int CoarseBits    = Axes * FilterFrac;
+  localparam int IdBits        = 2;  // Bonds: of an id, which is least significant in a candidate
+  localparam int CoarseBits    = (Bonds > 0) ? Bonds * IdBits : Axes * FilterFrac;  // of a slot, in a lane
   localparam int CandidateBits = Axes * (PositionFrac + 2) + 1;
   localparam int Slots         = 2 * FilterLanes;  // two rows
   localparam int Bits          = PositionFrac + 6;
@@ -30,7 +33,8 @@ module filter_formal #(
   logic running_q = 1'b0;  // reset in the first cycle only
   always_ff @(posedge clk_i) running_q <= 1'b1;
 
-  // Own particles do not change while candidates stream past; of their positions the leading bits are kept.
+  // Own particles do not change while candidates stream past; of their positions the leading bits are kept, of their
+  // rows of bonds the partners' ids.
   (* anyconst *) logic [Slots*CoarseBits-1:0] own;
   (* anyconst *) logic [3:0]                  own_count;
   logic                                       stall, push, row, busy;
@@ -52,7 +56,8 @@ module filter_formal #(
   cuboct_filter #(
     .Axes(Axes), .PositionFrac(PositionFrac), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne),
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits),
-    .FilterLanes(FilterLanes), .RowBits(1), .SlotBits(3), .CountBits(4)
+    .FilterLanes(FilterLanes), .RowBits(1), .SlotBits(3), .CountBits(4), .Bonds(Bonds),
+    .IdBits(IdBits), .IdLsb(0)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .present_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
     .candidate_i(answer_q), .row_data_i(answer_row_q), .full_i, .stall_o(stall), .push_o(push),
@@ -64,7 +69,8 @@ module filter_formal #(
   logic [Bits-1:0]        sizes [0:2];
   logic [FilterLanes-1:0] passes;
   logic [2:0]             other;
-  integer                 l, a;
+  logic                   partner;
+  integer                 l, a, b;
   always_comb begin
     passes     = '0;
     position   = '0;
@@ -73,9 +79,14 @@ module filter_formal #(
     sizes[1]   = '0;
     sizes[2]   = '0;
     other      = '0;
+    partner    = 1'b0;
     for (l = 0; l < FilterLanes; l = l + 1) begin
       other = row_i ? FilterLanes[2:0] + l[2:0] : l[2:0];
-      for (a = 0; a < Axes; a = a + 1) begin
+      partner = 1'b0;
+      for (b = 0; b < Bonds; b = b + 1) begin
+        if (own[(row_i ? FilterLanes + l : l)*CoarseBits+b*IdBits +: IdBits] == candidate_i[IdBits-1:0]) partner = 1'b1;
+      end
+      for (a = 0; a < ((Bonds > 0) ? 0 : Axes); a = a + 1) begin
         // Leading bits: of 4 * 2^P + x, which is positive, what is left of the shift, less that of 4 * 2^P.
         position = $signed({{(Bits - PositionFrac - 2) {candidate_i[a*(PositionFrac+2)+PositionFrac+1]}},
                             candidate_i[a*(PositionFrac+2) +: PositionFrac+2]}) + (4 << PositionFrac);
@@ -89,7 +100,7 @@ module filter_formal #(
                 && sizes[0] <= PlanarOne && sizes[1] <= PlanarOne && sizes[2] <= PlanarOne
                 && sizes[0] + sizes[1] <= PlanarTwo && sizes[1] + sizes[2] <= PlanarTwo
                     && sizes[2] + sizes[0] <= PlanarTwo
-                && sizes[0] + sizes[1] + sizes[2] <= PlanarThree;
+                && sizes[0] + sizes[1] + sizes[2] <= PlanarThree && (partner || Bonds == 0);
     end
   end
 

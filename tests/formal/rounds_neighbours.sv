@@ -446,7 +446,7 @@ module rounds_neighbours_formal #(
       c_apart:    cover (apart_q);
       c_waits:    cover (waited_q);
       c_step:     cover (step_0_q == 3'd1 && idle == 2'b11);
-      c_same:     cover (come_end_0[Rounds-1] && records_0_q[3:0] == Capacity[3:0] && step_0_q == 3'd1);
+      c_same:     cover (come_end_0[Rounds-1] && records_0_q[4*(Rounds-1) +: 4] == Capacity[3:0]);
     end
   end
 endmodule
