@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "cli/run/text_cost.h"
 #include "hw/engine/engines.h"
 #include "hw/engine/scene_engine.h"
 #include "model/analysis/synopsis.h"
@@ -73,15 +74,19 @@ uint64_t round_interval(uint64_t steps, double most) {
 // A rule of rounds keeps its bonds from the start: a neighbour is one, with all rounds and all that it keeps.
 // Times are those of the linear peridynamic solid with 17 bonds a particle, on one core of an EPYC: where
 // none breaks, and while an eighth of them does. Bonds of the moment are those of Tersoff's potential in a
-// sheet of carbon. A rule that is text: the template `rule`.
-EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
+// sheet of carbon. A rule that is text: by its operations.
+EngineCost cost_of(const EngineRow& engine, const Scene& scene, double neighbours) {
   EngineCost cost = engine.cost;
   const RoundsRule* rounds = scene.rule.rounds.get();
   if (rounds == nullptr || engine.here != Here::reference) return cost;
   const bool breaks = std::isfinite(rounds->bond_reach());
   cost.neighbour_time = breaks ? 38e-9 : 13e-9, cost.neighbour = 70;
   if (rounds->declaration().bonds == BondRange::current) cost.neighbour_time = 10e-9;
-  if (rounds->text() != nullptr) cost.neighbour_time = 20e-9;
+  if (const RuleProgram* text = rounds->text()) {
+    const TextCost of_text = text_cost(*text);
+    // Where a particle has few neighbours its finishes count.
+    cost.neighbour_time = of_text.neighbour + of_text.particle / std::max(1.0, neighbours);
+  }
   return cost;
 }
 
@@ -89,7 +94,7 @@ EngineCost cost_of(const EngineRow& engine, const Scene& scene) {
 // any of them. So few neighbours cost as much as 23, or each of them as 4.5. Templates on one thread of an
 // EPYC: 50 ns in `sheet`, 90 in `tension`, 100 in `gas`, 200 in `metal` with its 55 neighbours.
 double particle_time(const EngineRow& engine, const Scene& scene, double neighbours) {
-  const double rate = cost_of(engine, scene).neighbour_time;
+  const double rate = cost_of(engine, scene, neighbours).neighbour_time;
   if (engine.here != Here::lattice) return rate * std::max(4.0, neighbours);
   return rate * std::max({4.0, neighbours, std::min(4.5 * neighbours, 23.0)});
 }
@@ -112,7 +117,7 @@ double lists_time(const EngineRow& engine, const Scene& scene, const Plan& plan,
 // `metal`. Engines that do not hand on the sums of their pairs take a step's time for those.
 double energies_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
   constexpr double kParticle = 300e-9, kPair = 10e-9;
-  const double sums = engine.here == Here::lattice ? 0 : cost_of(engine, scene).neighbour_time * neighbours;
+  const double sums = engine.here == Here::lattice ? 0 : cost_of(engine, scene, neighbours).neighbour_time * neighbours;
   return particles * (kParticle + kPair * neighbours / 2 + sums);
 }
 
@@ -131,7 +136,7 @@ double probes_time(const EngineRow& engine, const Scene& scene, double particles
   for (const Probe& probe : scene.probes)
     for (const ParticleSet* set : {&probe.set, &probe.lower, &probe.upper, &probe.grip})
       probed += static_cast<double>(set->ids.size());
-  const double of_sums = sums ? cost_of(engine, scene).neighbour_time * neighbours : 0;
+  const double of_sums = sums ? cost_of(engine, scene, neighbours).neighbour_time * neighbours : 0;
   double each = engine.here == Here::lattice ? kParticle : kState + of_sums;
   if (stress) each += kState + 2 * kPair * neighbours;
   return particles * each + probed * kProbed;
@@ -152,8 +157,8 @@ RunSize run_size(const Scene& scene, uint64_t steps) {
 
 Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   const EngineRow& engine = engine_row(size.engine);
-  const EngineCost rates = cost_of(engine, scene);
   const Extent extent = extent_of(scene, plan.rule);
+  const EngineCost rates = cost_of(engine, scene, extent.neighbours);
   const double particles = plan.particles, cells = plan.lattice.size(),
                steps = static_cast<double>(size.steps);
   Estimate e;
