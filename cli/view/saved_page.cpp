@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -18,6 +19,9 @@
 
 namespace cuboct {
 namespace {
+
+// Phases of all steps take this part of the page at most; blocks of the machine are words of so many bytes.
+constexpr size_t kMachinePart = 10, kMachineWidth = 4;
 
 // Bytes of equal weight together: the high ones of neighbours are alike, and so pack well.
 std::string parted(const std::string& bytes, size_t width) {
@@ -57,26 +61,51 @@ size_t rounded_up(double value) {
   return static_cast<size_t>(std::ceil(value / power) * power);
 }
 
+std::string element(const std::string& id, const std::string& block, size_t width) {
+  const std::string bytes = packed(parted(block, width));
+  return fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id,
+                     base64(bytes.data(), bytes.size()));
+}
+
 // The elements of one frame.
 std::string blocks_of(const ViewFrame& frame, const StoredRun& run, size_t k) {
   std::string blocks;
-  for (size_t b = 0; b < frame.blocks.size(); ++b) {
-    const std::string bytes = packed(parted(frame.blocks[b], run.form().blocks()[b].width()));
-    blocks += fmt::format("<script type=\"text/plain\" id=\"b{}-{}\">{}</script>\n", k, b,
-                          base64(bytes.data(), bytes.size()));
+  for (size_t b = 0; b < frame.blocks.size(); ++b)
+    blocks += element(fmt::format("b{}-{}", k, b), frame.blocks[b], run.form().blocks()[b].width());
+  if (run.machine().is_there()) blocks += element(fmt::format("m-held-{}", k), run.held(k), kMachineWidth);
+  return blocks;
+}
+
+// The steps whose phases the page has: all where they take a small part of it, else those of frames. Nothing:
+// all.
+std::optional<std::vector<size_t>> kept_steps(const StoredRun& run, size_t limit) {
+  if (run.machine().steps() * run.machine().step_bytes() <= limit / kMachinePart) return std::nullopt;
+  return run.steps_of_frames();
+}
+
+// The elements of the machine but for those of frames.
+std::string machine_blocks(const StoredRun& run, const std::optional<std::vector<size_t>>& kept) {
+  const ViewMachine& machine = run.machine();
+  if (!machine.is_there()) return {};
+  std::string blocks = element("m-nodes-0", machine.nodes(), kMachineWidth);
+  const size_t count = kept ? kept->size() : machine.steps();
+  for (size_t k = 0; k < count; ++k) {
+    const size_t step = kept ? (*kept)[k] : k;
+    blocks += element(fmt::format("m-spans-{}", step), machine.spans(step), kMachineWidth);
   }
   return blocks;
 }
 
-// `most`: bytes of the largest frame so far.
-[[noreturn]] void refuse_size(const StoredRun& run, size_t most, size_t limit, size_t every) {
+// `machine`: bytes of the machine but for frames; `most`: of the largest frame so far.
+[[noreturn]] void refuse_size(const StoredRun& run, size_t machine, size_t most, size_t limit, size_t every) {
   const size_t frames = run.frames();
   // Frames of a body that moves pack worse than the first.
   for (const size_t k : {frames / 2, frames - 1}) {
     const ViewFrame frame = run.frame(k);
     most = std::max(most, blocks_of(frame, run, k).size() + frame.json().size());
   }
-  const double fixed = static_cast<double>(page(run.title(), run.tell().json(), "", "'none'").size());
+  const double fixed =
+      static_cast<double>(page(run.title(), run.tell().json(), "", "'none'").size() + machine);
   const double each = 1.1 * static_cast<double>(most), bytes = fixed + static_cast<double>(frames) * each;
   const double room = static_cast<double>(limit) - fixed;
   std::vector<std::string> hints;
@@ -108,7 +137,10 @@ bool has_view_page() { return true; }
 
 std::string saved_page(const StoredRun& run, size_t limit, size_t every) {
   Story story = run.tell();
-  std::string blocks;
+  const std::optional<std::vector<size_t>> kept = kept_steps(run, limit);
+  story.machine = run.machine().json(kept);
+  std::string blocks = machine_blocks(run, kept);
+  const size_t machine = blocks.size() + story.machine.size();
   size_t most = 0;
   for (size_t k = 0; k < run.frames(); ++k) {
     const ViewFrame frame = run.frame(k);
@@ -116,11 +148,11 @@ std::string saved_page(const StoredRun& run, size_t limit, size_t every) {
     const std::string added = blocks_of(frame, run, k);
     most = std::max(most, added.size() + story.frames.back().size());
     blocks += added;
-    if (blocks.size() > limit) refuse_size(run, most, limit, every);
+    if (blocks.size() > limit) refuse_size(run, machine, most, limit, every);
   }
   std::string html = page(run.title(), story.json(), blocks, "'none'");
   if (html.size() <= limit) return html;
-  if (run.frames() > 0) refuse_size(run, most, limit, every);
+  if (run.frames() > 0) refuse_size(run, machine, most, limit, every);
   throw InputError(fmt::format("the page takes {:.3g} MB without any frame, above the {:.3g} MB of --limit",
                                1e-6 * static_cast<double>(html.size()), 1e-6 * static_cast<double>(limit)),
                    "a larger --limit");

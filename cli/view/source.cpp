@@ -28,6 +28,7 @@ std::string Story::json() const {
                               return cuboct::json(std::vector<std::string>{fact.first, fact.second});
                             })},
        {"left_out", cuboct::json(left_out)},
+       {"machine", machine},
        {"live", cuboct::json(live)},
        {"may_end", cuboct::json(may_end)}});
 }

@@ -21,6 +21,7 @@ struct Story {
   std::vector<std::string> warnings{}, lines{};              // lines: of the run's log
   std::vector<std::pair<std::string, std::string>> facts{};  // name and text
   std::string left_out{};                                    // frames that are not there, in words
+  std::string machine = "null";                              // ViewMachine::json
   bool live = false, may_end = false;                        // may_end: the run can be ended from the page
   std::string json() const;
 };
@@ -35,6 +36,8 @@ class ViewSource {
   virtual std::string news(size_t frames, size_t lines) = 0;
   // A block of a frame, or the row of one particle; null where there is none.
   virtual Bytes block(size_t frame, size_t block, std::optional<size_t> row) = 0;
+  // Of the machine: "nodes", "held" of frame k, "spans" of step k; null where there is none.
+  virtual Bytes machine(const std::string&, size_t) { return nullptr; }
   virtual bool command(const std::string& word) = 0;  // false: nothing here follows it
 };
 

@@ -30,6 +30,7 @@ StoredRun::StoredRun(const std::string& directory, size_t every, size_t particle
       shots_(loaded_, trace_, directory + "/trace.h5"),
       head_(head_of(loaded_, shots_.real(), false)),
       form_(head_, frame_style(loaded_.scene), loaded_.setup.plan.particles, particles),
+      machine_(loaded_, trace_, record_, shots_.real()),
       chosen_(chosen_of(shots_.size(), every)) {}
 
 Frame StoredRun::bare_frame(size_t k) const {
@@ -77,10 +78,29 @@ std::shared_ptr<const ViewFrame> StoredRun::kept(size_t k) {
 
 std::string StoredRun::story() {
   Story story = tell();
+  story.machine = machine_.json({});
   // The bounds of each, of which the page makes metres; without what else a frame has to be measured for.
   for (size_t k = 0; k < chosen_.size(); ++k)
     story.frames.push_back(form_.bounds(bare_frame(chosen_[k])).json());
   return story.json();
+}
+
+std::vector<size_t> StoredRun::steps_of_frames() const {
+  std::vector<size_t> steps;
+  for (size_t k = 0; machine_.steps() > 0 && k < chosen_.size(); ++k) {
+    const size_t step = std::min<size_t>(shots_.step(chosen_[k]), machine_.steps() - 1);
+    if (steps.empty() || steps.back() < step) steps.push_back(step);
+  }
+  return steps;
+}
+
+Bytes StoredRun::machine(const std::string& block, size_t k) {
+  const auto bytes = [](std::string text) { return std::make_shared<const std::string>(std::move(text)); };
+  if (!machine_.is_there()) return nullptr;
+  if (block == "nodes" && k == 0) return bytes(machine_.nodes());
+  if (block == "held" && k < chosen_.size()) return bytes(held(k));
+  if (block == "spans" && k < machine_.steps()) return bytes(machine_.spans(k));
+  return nullptr;
 }
 
 std::string StoredRun::news(size_t, size_t) {

@@ -8,6 +8,7 @@
 
 #include "cli/run/outputs.h"
 #include "cli/run/report_pictures.h"
+#include "cli/view/machine.h"
 #include "cli/view/source.h"
 #include "model/trace/view_frame.h"
 
@@ -26,10 +27,15 @@ class StoredRun : public ViewSource {
   size_t particles() const { return loaded_.setup.plan.particles; }
   const ViewFrames& form() const { return form_; }
   ViewFrame frame(size_t k) const;
+  const ViewMachine& machine() const { return machine_; }
+  std::string held(size_t k) const { return machine_.held(*shots_.state(chosen_[k])); }
+  // Of the steps whose phases were recorded those that begin with a frame, and that before the last one.
+  std::vector<size_t> steps_of_frames() const;
 
   std::string story() override;
   std::string news(size_t, size_t) override;
   Bytes block(size_t frame, size_t block, std::optional<size_t> row) override;
+  Bytes machine(const std::string& block, size_t k) override;
   bool command(const std::string&) override { return false; }
 
  private:
@@ -42,6 +48,7 @@ class StoredRun : public ViewSource {
   Shots shots_;
   TraceHead head_;
   ViewFrames form_;
+  ViewMachine machine_;
   std::vector<size_t> chosen_;  // of the trace's frames
   std::mutex guard_;            // of `made_`, and of making: a strain meter is built by the first frame
   std::deque<std::pair<size_t, std::shared_ptr<const ViewFrame>>>

@@ -31,7 +31,7 @@ struct ViewOptions {
   bool no_open = false, limit_given = false, port_given = false, particles_given = false;
   // Of a run that is started.
   std::string arch, engine, out, steps, frame_every;
-  bool force = false;
+  bool force = false, cycles = false;
   Answer answer;
 };
 
@@ -61,6 +61,7 @@ std::vector<std::string> run_words(const ViewOptions& options, const std::string
                                     {"--frame-every", options.frame_every}})
     if (!value.empty()) words.emplace_back(name), words.push_back(value);
   if (options.force) words.emplace_back("--force");
+  if (options.cycles) words.emplace_back("--cycles");
   return words;
 }
 
@@ -82,6 +83,7 @@ int view(const ViewOptions& options) {
                                       {"--out", &options.out}})
     of_scene(!value->empty(), option);
   of_scene(options.force, "--force");
+  of_scene(options.cycles, "--cycles");
   if (!options.save.empty()) {
     if (!directory)
       throw InputError(
@@ -166,6 +168,8 @@ void add_view(Command& app, int& exit_code) {
       .type_name("DIR");
   command.flag("--force", options->force,
                "of a SCENE: begin anew in a DIR whose run did not end, in its place");
+  command.flag("--cycles", options->cycles,
+               "of a SCENE: count the machine's cycles, for the page of the run that is over");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = view(*options); });
 }

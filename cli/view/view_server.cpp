@@ -10,6 +10,18 @@
 namespace cuboct {
 namespace {
 
+// Of "machine/held/3": "held" and 3.
+std::optional<std::pair<std::string, size_t>> machine_block(const std::string& path) {
+  constexpr std::string_view kBegin = "machine/";
+  const size_t slash = path.rfind('/');
+  if (!path.starts_with(kBegin) || slash < kBegin.size()) return std::nullopt;
+  std::pair<std::string, size_t> found{path.substr(kBegin.size(), slash - kBegin.size()), 0};
+  const char* const end = path.data() + path.size();
+  const auto number = std::from_chars(path.data() + slash + 1, end, found.second);
+  if (number.ec != std::errc() || number.ptr != end) return std::nullopt;
+  return found;
+}
+
 // Of "frame/12/3": 12 and 3.
 std::optional<std::pair<size_t, size_t>> frame_and_block(const std::string& path) {
   constexpr std::string_view kBegin = "frame/";
@@ -60,6 +72,10 @@ HttpAnswer ViewServer::answer(const HttpAsked& asked) {
     return json_answer(now->news(asked.number("frames").value_or(0), asked.number("lines").value_or(0)));
   if (const auto place = frame_and_block(asked.path)) {
     const Bytes block = now->block(place->first, place->second, asked.number("row"));
+    if (block) return {200, "application/octet-stream", block};
+  }
+  if (const auto part = machine_block(asked.path)) {
+    const Bytes block = now->machine(part->first, part->second);
     if (block) return {200, "application/octet-stream", block};
   }
   return {};

@@ -18,7 +18,7 @@ saved() {  # NAME SCENE WORDS...
   "$node" "$here/saved_page_test.mjs" "$work/$name.html" "$work/$name.json" "$chromium" "$study_web" ${pictures:+"$pictures/$name"}
 }
 
-saved words scenes/two_types.toml --steps 60 --frame-every 30
+saved words scenes/two_types.toml --steps 60 --frame-every 30 --cycles
 browser=-
 if [ "$tier" = whole ]; then
   saved doubles scenes/lj_block.toml --steps 40 --frame-every 20 --engine reference

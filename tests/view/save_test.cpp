@@ -14,6 +14,7 @@
 
 #include "model/base/directory_lock.h"
 #include "model/base/text.h"
+#include "model/trace/trace.h"
 #include "tests/cli/shell.h"
 #include "tests/support/hostile.h"
 
@@ -45,9 +46,11 @@ class View : public testing::Test {
     EXPECT_EQ(answer.code, 0) << answer.err;
     return contents(path("page.html"));
   }
-  static size_t blocks(const std::string& page) {
+  // Elements whose ids begin so: "b" of frames, "m" of the machine.
+  static size_t blocks(const std::string& page, const std::string& id = "b") {
     size_t count = 0;
-    for (size_t at = 0; (at = page.find("<script type=\"text/plain\" id=\"b", at)) != std::string::npos; ++at)
+    for (size_t at = 0; (at = page.find("<script type=\"text/plain\" id=\"" + id, at)) != std::string::npos;
+         ++at)
       ++count;
     return count;
   }
@@ -126,6 +129,48 @@ TEST_F(View, RefusesOptionsThatDoNothing) {
               option +
                   " is of a run that is over, and one that is started is not\n  hint: without it the "
                   "page follows the run\n");
+}
+
+// Nodes and what they held of any run in integers; how to record the rest.
+TEST_F(View, TellsWhichCommandRecordsCycles) {
+  const std::string page = saved({path("run")});
+  EXPECT_EQ(blocks(page, "m-nodes"), 1U);
+  EXPECT_EQ(blocks(page, "m-held"), 5U);
+  EXPECT_EQ(blocks(page, "m-spans"), 0U);
+  EXPECT_NE(page.find("scenes/lj_block.toml --engine lattice --cycles --out DIR\""), std::string::npos);
+  const Answer ran = bench_->cuboct({"run", "scenes/lj_block.toml", "--steps", "2", "--engine", "reference",
+                                     "--quiet", "--frames", "none", "--out", path("doubles")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string doubles = saved({path("doubles")});
+  EXPECT_EQ(blocks(doubles, "m"), 0U);
+  EXPECT_NE(doubles.find("\"missing\":\"A run in real numbers has no machine."), std::string::npos);
+}
+
+// All steps where they take a small part of the page, else those of frames and the last.
+TEST_F(View, HasTheStepsOfFramesWhereAllAreTooLarge) {
+  const Answer ran = bench_->cuboct({"run", "scenes/lj_block.toml", "--steps", "60", "--frame-every", "40",
+                                     "--cycles", "--quiet", "--frames", "none", "--out", path("cycles")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const std::string all = saved({path("cycles")}), part = saved({path("cycles"), "--limit", "1"});
+  EXPECT_EQ(blocks(all, "m-spans"), 60U);
+  EXPECT_NE(all.find("\"kept\":null"), std::string::npos);
+  EXPECT_EQ(blocks(part, "m-spans"), 3U);
+  EXPECT_NE(part.find("\"kept\":[0,40,59]"), std::string::npos);
+}
+
+TEST_F(View, RefusesPhasesOfAnotherMachine) {
+  const Answer ran = bench_->cuboct({"run", "scenes/lj_block.toml", "--steps", "2", "--cycles", "--quiet",
+                                     "--frames", "none", "--out", path("foreign")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  Trace trace = read_trace(path("foreign") + "/trace.h5");
+  trace.nodes = 1;
+  trace.cycles.resize(2 * trace.phases());
+  write_trace(path("foreign") + "/trace.h5", trace);
+  const Answer answer = view({path("foreign"), "--save", path("foreign.html")});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(answer.err.starts_with("the phases in the trace are of 1 nodes, and the scene's machine has "))
+      << answer.err;
+  EXPECT_FALSE(fs::exists(path("foreign.html")));
 }
 
 // A socket at which somebody listens and nobody takes a connection: that of a page whose process is stopped.
@@ -244,7 +289,7 @@ steps = 2
   // Elements of our own alone: three of data and script beside the blocks.
   size_t scripts = 0;
   for (size_t at = 0; (at = page.find("<script", at)) != std::string::npos; ++at) ++scripts;
-  EXPECT_EQ(scripts, blocks(page) + 2);
+  EXPECT_EQ(scripts, blocks(page, "") + 2);
   EXPECT_NE(page.find("<title>" + html_text(hostile_text()) + "</title>"), std::string::npos);
   EXPECT_FALSE(take_loot());
 }

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {pathToFileURL} from "node:url";
 import {choose, drawn, launch, open, show} from "./browser.mjs";
+import {the_machine_fits, the_machine_is_that_of_the_trace} from "./machine_checks.mjs";
 
 const [path, numbers, chromium, study_web, pictures] = process.argv.slice(2);
 const trace = JSON.parse(readFileSync(numbers, "utf8"));
@@ -184,6 +185,7 @@ try {
       await a_part_stands_for_the_whole(page);
       await a_click_picks(page);
       await time_goes_both_ways(page);
+      if (trace.machine) console.log(`${await the_machine_is_that_of_the_trace(page, trace, pictures)} numbers of the machine are those of the trace`);
     }
     assert.equal(await page.isVisible("#live"), false);
     assert.equal(await page.isVisible("#problem"), false);
@@ -192,6 +194,7 @@ try {
     assert.ok((await drawn(page)).inked > 500, "nothing is drawn");
     await choose(page, 0);
     if (pictures) await page.screenshot({path: `${pictures}/saved_${width}.png`, fullPage: width < 1000});
+    if (trace.machine && width < 1000) await the_machine_fits(page, pictures);
     assert.deepEqual(problems, []);
     await context.close();
   }

@@ -41,9 +41,22 @@ def real_frames(trace):
                "speed": np.linalg.norm(v, axis=1).tolist(), "places": x.tolist(), "types": bodies["type"][:].tolist()}
 
 
+def machine(trace):
+    """Of a machine of one cell per node: its cells, what each held at the frames, first and last cycle of each phase of each step."""
+    if "cycles" not in trace or trace.attrs["nodes"] != len(trace["lattice/cell"]):
+        return None
+    frames, first, cells = trace["frames"], trace["frames/first"][:], trace["lattice/cell"][:]
+    held = [np.bincount(frames["node"][first[k]:first[k + 1]], minlength=len(cells)).tolist() for k in range(len(frames["step"]))]
+    rounds = int(trace.attrs.get("rounds", 1))
+    round_phases = ["exchange_x", "exchange_y", "exchange_z", "force", "update"]
+    phases = [name if rounds == 1 else f"{name} {k + 1}" for k in range(rounds) for name in round_phases] + ["migrate_x", "migrate_y", "migrate_z"]
+    return {"cells": cells.tolist(), "period": trace["lattice"].attrs["period"].tolist(), "held": held, "phases": phases, "cycles": trace["cycles"][:].tolist()}
+
+
 with h5py.File(sys.argv[1] + "/trace.h5") as trace:
     real = "bodies" in trace and len(trace["bodies/step"]) > 0
     curves = {name: [curve["step"][:].tolist(), [value if np.isfinite(value) else None for value in curve["value"][:].tolist()]] for name, curve in trace["curves"].items()}
     print(json.dumps({"title": trace.attrs["title"].decode() if isinstance(trace.attrs["title"], bytes) else trace.attrs["title"],
                       "dt": float(trace.attrs["dt"]), "types": [name.decode() for name in trace["types"][:]],
-                      "frames": list(real_frames(trace) if real else fixed_frames(trace)), "curves": curves}))
+                      "frames": list(real_frames(trace) if real else fixed_frames(trace)), "curves": curves,
+                      "machine": None if real else machine(trace)}))

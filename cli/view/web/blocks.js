@@ -22,6 +22,12 @@ async function unpacked(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
+function bytes_in(id) {
+  const packed = atob(document.getElementById(id).textContent.trim()), bytes = new Uint8Array(packed.length);
+  for (let k = 0; k < packed.length; ++k) bytes[k] = packed.charCodeAt(k);
+  return bytes;
+}
+
 // What stands in the page itself.
 export class SavedFrames {
   constructor(story) {
@@ -29,11 +35,12 @@ export class SavedFrames {
     this.live = false;
   }
   async block(frame, index) {
-    const packed = atob(document.getElementById(`b${frame}-${index}`).textContent.trim());
-    const bytes = new Uint8Array(packed.length);
-    for (let k = 0; k < packed.length; ++k) bytes[k] = packed.charCodeAt(k);
     const form = this.story.head.blocks[index];
-    return joined(await unpacked(bytes), kWidths[form.number]).buffer;
+    return joined(await unpacked(bytes_in(`b${frame}-${index}`)), kWidths[form.number]).buffer;
+  }
+  // Words of the machine: "nodes" 0, "held" of a frame, "spans" of a step.
+  async machine(name, k) {
+    return joined(await unpacked(bytes_in(`m-${name}-${k}`)), 4).buffer;
   }
   // The numbers of one particle.
   async row(frame, index, place) {
@@ -55,6 +62,9 @@ export class ServedFrames {
   }
   async block(frame, index) {
     return (await this.ask(`frame/${frame}/${index}`)).arrayBuffer();
+  }
+  async machine(name, k) {
+    return (await this.ask(`machine/${name}/${k}`)).arrayBuffer();
   }
   async row(frame, index, place) {
     return (await this.ask(`frame/${frame}/${index}?row=${place}`)).arrayBuffer();

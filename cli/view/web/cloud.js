@@ -48,6 +48,14 @@ function spread(count) {
   return order;
 }
 
+// 256 colours as a texture.
+export function texture_of(bytes, smooth) {
+  const made = new DataTexture(bytes, 256, 1, RGBAFormat);
+  made.magFilter = made.minFilter = smooth ? LinearFilter : NearestFilter;
+  made.needsUpdate = true;
+  return made;
+}
+
 export class Cloud {
   constructor() {
     this.geometry = new BufferGeometry();
@@ -83,10 +91,7 @@ export class Cloud {
   }
   table(bytes, smooth) {
     this.material.uniforms.colours.value?.dispose();
-    const made = new DataTexture(bytes, 256, 1, RGBAFormat);
-    made.magFilter = made.minFilter = smooth ? LinearFilter : NearestFilter;
-    made.needsUpdate = true;
-    this.material.uniforms.colours.value = made;
+    this.material.uniforms.colours.value = texture_of(bytes, smooth);
   }
   // The buffer of before is written over where the size is the same.
   set(name, values, numbers, normalised) {

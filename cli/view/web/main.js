@@ -6,6 +6,7 @@ import {gradient_of, kTypes, range_of, table_of, table_of_types} from "./colours
 import {charts_of} from "./curves.js";
 import {by_id, element, number, with_unit} from "./format.js";
 import {follow} from "./live.js";
+import {Machine} from "./machine.js";
 import {Stage} from "./stage.js";
 
 const embedded = JSON.parse(by_id("story").textContent);
@@ -18,6 +19,7 @@ class Page {
     this.chosen = -1;
     this.held = null;
     this.charts = [];
+    if (story.machine) this.machine = new Machine(this, source);
   }
 
   // What colours can be of: each field, of a vector its length and its parts.
@@ -47,6 +49,8 @@ class Page {
     this.tell_lists();
     this.charts = charts_of(this.story, by_id("curves"));
     by_id("curves-none").hidden = this.charts.length > 0;
+    by_id("what-part").hidden = !this.machine;
+    this.machine?.begin();
     this.listen();
   }
   lead() {
@@ -72,6 +76,7 @@ class Page {
     on("play", "click", () => this.play());
     on("colour", "change", () => { this.held = null; by_id("hold").checked = false; return this.recolour(); });
     on("hold", "change", () => { this.held = by_id("hold").checked ? this.range : null; return this.recolour(); });
+    on("what", "change", () => this.swap());
     for (const id of ["cut-axis", "cut-at", "cut-turn"]) on(id, "input", () => this.cut());
     document.querySelectorAll("#looks button").forEach((button) =>
       button.addEventListener("click", () => this.stage?.look(button.dataset.look)));
@@ -82,7 +87,8 @@ class Page {
     canvas.addEventListener("pointerup", (event) => {
       if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
       const box = canvas.getBoundingClientRect();
-      this.attempt(() => this.choose(this.stage.pick(event.clientX - box.left, event.clientY - box.top)));
+      const x = event.clientX - box.left, y = event.clientY - box.top;
+      this.attempt(() => (this.nodes_shown() ? this.machine.choose(this.stage.pick_node(x, y)) : this.choose(this.stage.pick(x, y))));
     });
     document.addEventListener("keydown", (event) => {
       if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
@@ -119,6 +125,7 @@ class Page {
     this.frame = frame;
     await this.recolour();
     await this.tell_chosen();
+    if (this.machine_shown()) await this.machine.show(frame);
     by_id("time").max = String(frames.length - 1);
     by_id("time").value = String(frame);
     by_id("now").textContent = `frame ${frame + 1} of ${frames.length}, step ${step}${head.static ? "" : ", " + with_unit(time, head.reduced ? "" : "s", 5)}`;
@@ -128,7 +135,24 @@ class Page {
   }
   shown_count = 0;
 
+  // The machine, or particles. Where a run has no machine its particles stay, and a line says why.
+  machine_shown() { return Boolean(this.machine) && by_id("what").value === "machine"; }
+  nodes_shown() { return this.machine_shown() && this.machine.ready; }
+  async swap() {
+    const machine = this.machine_shown(), {told} = this.machine, nodes = machine && told.nodes > 0;
+    document.querySelectorAll(".of-machine").forEach((part) => { part.hidden = !nodes; });
+    document.querySelectorAll(".of-particles").forEach((part) => { part.hidden = nodes; });
+    by_id("steps-row").hidden = !nodes || told.steps === 0;
+    by_id("machine-missing").hidden = !machine || told.steps > 0;
+    if (!this.stage) return;
+    if (nodes) await this.machine.show(this.frame);
+    this.stage.swap(nodes);
+    this.cut();
+    if (!nodes) await this.recolour();
+  }
+
   async recolour() {
+    if (this.nodes_shown()) return;
     const choice = this.colours[Number(by_id("colour").value)], {head} = this.story, form = head.blocks[choice.block];
     const all = array_of(form, await source.block(this.frame, choice.block));
     const values = new Float32Array(all.length / form.numbers);
@@ -139,13 +163,27 @@ class Page {
     const kind = this.range.signed ? "diverging" : "viridis";
     this.stage.cloud.table(table_of(kind), true);
     this.stage.cloud.colour(values, this.range.low, this.range.high);
+    this.tell_scale(choice.name + (this.range.empty ? ": not known" : ""), kind, number(this.range.low), with_unit(this.range.high, choice.unit));
+    this.stage.draw();
+  }
+  // What colours say: a scale between two numbers, or names.
+  tell_scale(name, kind, low, high) {
     by_id("legend-bar").style.background = gradient_of(kind);
     by_id("legend").hidden = false;
     by_id("types").hidden = true;
-    by_id("legend-low").textContent = number(this.range.low);
-    by_id("legend-high").textContent = with_unit(this.range.high, choice.unit);
-    by_id("legend-name").textContent = choice.name + (this.range.empty ? ": not known" : "");
-    this.stage.draw();
+    by_id("legend-low").textContent = low;
+    by_id("legend-high").textContent = high;
+    by_id("legend-name").textContent = name;
+  }
+  tell_list(entries) {
+    by_id("legend").hidden = true;
+    by_id("types").hidden = false;
+    by_id("types").replaceChildren(...entries.map(({name, colour}) => {
+      const entry = element("li", name), dot = element("span", "", "dot");
+      dot.style.background = colour;
+      entry.prepend(dot);
+      return entry;
+    }));
   }
   colour_types(all, values) {
     const {types} = this.story.head;
@@ -154,14 +192,7 @@ class Page {
     this.range = {low: 0, high: types.length, signed: false};
     this.stage.cloud.table(table_of_types(types.length), false);
     this.stage.cloud.colour(values, 0, types.length);
-    by_id("legend").hidden = true;
-    by_id("types").hidden = false;
-    by_id("types").replaceChildren(...types.map(({material, constraint}, k) => {
-      const entry = element("li", material + (constraint ? ", " + constraint : "")), dot = element("span", "", "dot");
-      dot.style.background = kTypes[k % kTypes.length];
-      entry.prepend(dot);
-      return entry;
-    }));
+    this.tell_list(types.map(({material, constraint}, k) => ({name: material + (constraint ? ", " + constraint : ""), colour: kTypes[k % kTypes.length]})));
     this.stage.draw();
   }
   cut() {

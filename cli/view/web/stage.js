@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The place where particles are drawn: camera, mouse, cut plane, the box that repeats, how many particles a moving picture has.
 // Its units are those of the first frame's longest side, so that single-precision numbers of a GPU do for metres of any size.
-import {BoxGeometry, Color, EdgesGeometry, LineBasicMaterial, LineSegments, PerspectiveCamera, Scene, Vector2, Vector3, WebGLRenderer} from "three";
+import {BoxGeometry, Color, EdgesGeometry, LineBasicMaterial, LineSegments, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3,
+  WebGLRenderer} from "three";
 import {OrbitControls} from "three/addons/controls/OrbitControls.js";
 import {Axes} from "./axes.js";
 import {Cloud} from "./cloud.js";
+import {Nodes} from "./nodes.js";
 
 const kSlow = 1000 / 30;  // ms of a frame, beyond which a moving picture shows a part
 const kLeast = 20000;     // particles of such a part
@@ -22,6 +24,7 @@ export class Stage {
   constructor(canvas, head, box) {
     this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: false});
     this.renderer.setClearColor(new Color("#ffffff"));
+    this.renderer.localClippingEnabled = true;
     this.scene = new Scene();
     this.cloud = new Cloud();
     this.scene.add(this.cloud.points);
@@ -33,6 +36,7 @@ export class Stage {
     this.middle = box.lower.map((low, k) => low + box.extent[k] / 2);
     this.extent = box.extent.map((length) => length / this.size);
     this.radius = head.radius / this.size;
+    this.bounds = {middle: [0, 0, 0], extent: this.extent, beyond: this.radius};  // of what is looked at
     this.share = 1;
     this.moving = false;
     this.times = [];
@@ -60,14 +64,15 @@ export class Stage {
     // So far that a sphere about the body fits the narrower of the two angles.
     const half = (this.camera.fov * Math.PI) / 360, narrow = Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect || 1));
     const flat = {x: [1, 2], y: [0, 2], z: [0, 1]}[from];
-    const reach = (flat ? Math.hypot(this.extent[flat[0]], this.extent[flat[1]]) : Math.hypot(...this.extent)) / 2 + this.radius;
+    const {middle, extent, beyond} = this.bounds;
+    const reach = (flat ? Math.hypot(extent[flat[0]], extent[flat[1]]) : Math.hypot(...extent)) / 2 + beyond;
     const distance = (1.02 * reach) / Math.sin(narrow);
     this.camera.up.fromArray(up);
-    this.camera.position.fromArray(ways[from]).normalize().multiplyScalar(distance);
+    this.camera.position.fromArray(ways[from]).normalize().multiplyScalar(distance).add(new Vector3(...middle));
     this.camera.near = distance / 100;
     this.camera.far = distance * 100;
     this.camera.updateProjectionMatrix();
-    this.controls.target.set(0, 0, 0);
+    this.controls.target.set(...middle);
     this.from = from;
     this.controls.update();
     this.draw();
@@ -96,14 +101,25 @@ export class Stage {
     if (this.head.deform) this.repeats(box_at(this.head, box.step));
     this.cloud.place(places, {lower: this.inner(box.lower), extent: box.extent.map((length) => length / this.size)});
   }
-  // Particles beyond the plane, at `share` of the body along the axis, are not drawn. No axis: all are.
+  // Particles, or nodes, beyond the plane, at `share` of the body along the axis, are not drawn. No axis: all are.
   cut(axis, share, turned) {
-    const plane = this.cloud.material.uniforms.cut.value;
-    if (!axis) return plane.set(0, 0, 0, 1);
-    const k = "xyz".indexOf(axis), sign = turned ? -1 : 1, normal = [0, 0, 0];
-    normal[k] = sign;
-    const half = this.extent[k] / 2 + this.radius;
-    return plane.set(...normal, sign * (-half + 2 * half * share));
+    const k = "xyz".indexOf(axis), sign = turned ? -1 : 1, normal = [0, 0, 0], {middle, extent, beyond} = this.bounds;
+    if (axis) normal[k] = sign;
+    const half = axis ? extent[k] / 2 + beyond : 0, reach = axis ? sign * (middle[k] - half + 2 * half * share) : 1;
+    this.cloud.material.uniforms.cut.value.set(...normal, reach);
+    this.nodes?.cut(normal, reach);
+  }
+
+  // The machine's nodes in the place of particles, or particles again.
+  build(words, machine) {
+    this.nodes = new Nodes(words, machine, (place) => this.inner(place), this.size);
+    this.scene.add(this.nodes.group);
+  }
+  swap(machine) {
+    this.bounds = machine ? {...this.nodes.bounds, beyond: 0} : {middle: [0, 0, 0], extent: this.extent, beyond: this.radius};
+    this.cloud.points.visible = !machine;
+    if (this.nodes) this.nodes.group.visible = machine;
+    if (this.from) this.look(this.from);
   }
 
   // Pictures follow one another until nothing has moved for a while; so what one takes is the time between two.
@@ -154,6 +170,13 @@ export class Stage {
     return new Promise((done) => this.renderer.domElement.toBlob(done, "image/png"));
   }
 
+  // The node under a point of the canvas, in CSS pixels; -1: none.
+  pick_node(x, y) {
+    const {clientWidth: width, clientHeight: height} = this.renderer.domElement, ray = new Raycaster();
+    this.camera.updateMatrixWorld();
+    ray.setFromCamera(new Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
+    return this.nodes.pick(ray.ray);
+  }
   // The particle under a point of the canvas, in CSS pixels; -1: none. The nearest of those whose discs hold the point.
   pick(x, y) {
     const canvas = this.renderer.domElement, width = canvas.clientWidth, height = canvas.clientHeight;
