@@ -10,6 +10,9 @@ bool has_view_page() { return false; }
 std::string saved_page(const StoredRun&, size_t, size_t) {
   throw std::logic_error("saved_page without a page");
 }
+std::string saved_page(const ComparedRuns&, size_t, size_t) {
+  throw std::logic_error("saved_page without a page");
+}
 std::string served_page() { throw std::logic_error("served_page without a page"); }
 
 }  // namespace cuboct

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "cli/view/compared_runs.h"
 #include "cli/view/stored_run.h"
 
 namespace cuboct {
@@ -19,6 +20,8 @@ inline constexpr size_t kMostMegabytes = 2000;
 // InputError, before anything is written, where the page would be larger than `limit` bytes; its hint names
 // options that do. `every`: with which the run was read. Same run, same bytes.
 std::string saved_page(const StoredRun& run, size_t limit, size_t every);
+// Of two runs, without their machines.
+std::string saved_page(const ComparedRuns& runs, size_t limit, size_t every);
 
 // The page that asks.
 std::string served_page();

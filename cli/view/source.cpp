@@ -29,6 +29,7 @@ std::string Story::json() const {
                             })},
        {"left_out", cuboct::json(left_out)},
        {"machine", machine},
+       {"with", with},
        {"live", cuboct::json(live)},
        {"may_end", cuboct::json(may_end)}});
 }

@@ -22,6 +22,7 @@ struct Story {
   std::vector<std::pair<std::string, std::string>> facts{};  // name and text
   std::string left_out{};                                    // frames that are not there, in words
   std::string machine = "null";                              // ViewMachine::json
+  std::string with = "null";                                 // ComparedRuns::with
   bool live = false, may_end = false;                        // may_end: the run can be ended from the page
   std::string json() const;
 };
@@ -39,6 +40,8 @@ class ViewSource {
   // Of the machine: "nodes", "held" of frame k, "spans" of step k; null where there is none.
   virtual Bytes machine(const std::string&, size_t) { return nullptr; }
   virtual bool command(const std::string& word) = 0;  // false: nothing here follows it
+  // The run that is compared with this one; null: none.
+  virtual ViewSource* beside() { return nullptr; }
 };
 
 // One row of a block.

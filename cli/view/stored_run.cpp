@@ -24,7 +24,8 @@ std::vector<size_t> chosen_of(size_t frames, size_t every) {
 }  // namespace
 
 StoredRun::StoredRun(const std::string& directory, size_t every, size_t particles)
-    : record_(read_record(directory)),
+    : directory_(directory),
+      record_(read_record(directory)),
       trace_(read_run(directory, record_)),
       loaded_(scene_of_run(directory, record_, trace_)),
       shots_(loaded_, trace_, directory + "/trace.h5"),
@@ -32,6 +33,14 @@ StoredRun::StoredRun(const std::string& directory, size_t every, size_t particle
       form_(head_, frame_style(loaded_.scene), loaded_.setup.plan.particles, particles),
       machine_(loaded_, trace_, record_, shots_.real()),
       chosen_(chosen_of(shots_.size(), every)) {}
+
+void StoredRun::keep(const std::vector<uint64_t>& steps, size_t every) {
+  std::vector<size_t> there;
+  for (size_t k = 0; k < shots_.size(); ++k)
+    if (std::ranges::binary_search(steps, shots_.step(k))) there.push_back(k);
+  chosen_.clear();
+  for (const size_t k : chosen_of(there.size(), every)) chosen_.push_back(there[k]);
+}
 
 Frame StoredRun::bare_frame(size_t k) const {
   return shots_.real() ? frame_of(loaded_, trace_.bodies[k]) : frame_of(loaded_, trace_.frames[k]);
@@ -76,12 +85,17 @@ std::shared_ptr<const ViewFrame> StoredRun::kept(size_t k) {
   return frame;
 }
 
-std::string StoredRun::story() {
+Story StoredRun::told() const {
   Story story = tell();
-  story.machine = machine_.json({});
   // The bounds of each, of which the page makes metres; without what else a frame has to be measured for.
   for (size_t k = 0; k < chosen_.size(); ++k)
     story.frames.push_back(form_.bounds(bare_frame(chosen_[k])).json());
+  return story;
+}
+
+std::string StoredRun::story() {
+  Story story = told();
+  story.machine = machine_.json({});
   return story.json();
 }
 

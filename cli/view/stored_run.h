@@ -20,9 +20,21 @@ class StoredRun : public ViewSource {
   // where the directory holds no run that is over.
   StoredRun(const std::string& directory, size_t every, size_t particles);
 
+  // Of the frames those of these steps, which all are there; of them each so-manieth, and the last.
+  void keep(const std::vector<uint64_t>& steps, size_t every);
+
+  const std::string& directory() const { return directory_; }
+  const Loaded& loaded() const { return loaded_; }
+  const Trace& trace() const { return trace_; }
+  bool real() const { return shots_.real(); }
+  uint64_t step(size_t k) const { return shots_.step(chosen_[k]); }
+  const State& state(size_t k) const { return trace_.frames[chosen_[k]]; }       // of the fixed rule
+  const RealFrame& bodies(size_t k) const { return trace_.bodies[chosen_[k]]; }  // in real numbers
+
   std::string title() const;
   std::string left_out() const;  // of the frames; empty: none
   Story tell() const;            // without the frames
+  Story told() const;            // with their bounds
   size_t frames() const { return chosen_.size(); }
   size_t particles() const { return loaded_.setup.plan.particles; }
   const ViewFrames& form() const { return form_; }
@@ -42,6 +54,7 @@ class StoredRun : public ViewSource {
   Frame bare_frame(size_t k) const;  // places and velocities, of a frame of the trace
   std::shared_ptr<const ViewFrame> kept(size_t k);
 
+  std::string directory_;
   RunRecord record_;
   Trace trace_;
   Loaded loaded_;

@@ -16,6 +16,7 @@
 #include "cli/view/watch_run.h"
 #include "hw/engine/engines.h"
 #include "hw/program/options.h"
+#include "model/base/directory_lock.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
@@ -25,7 +26,7 @@ namespace cuboct {
 namespace {
 
 struct ViewOptions {
-  std::string what, save;
+  std::string what, save, with;
   uint64_t every = 1, particles = std::numeric_limits<uint32_t>::max(), limit = 100;
   uint32_t port = 0;
   bool no_open = false, limit_given = false, port_given = false, particles_given = false;
@@ -35,21 +36,55 @@ struct ViewOptions {
   Answer answer;
 };
 
-void save(const ViewOptions& options) {
-  check_writable(options.save);
-  const StoredRun run(options.what, options.every, options.particles);
-  const std::string page = saved_page(run, options.limit * 1000000, options.every);
-  write_text(options.save, page);
+// `difference`: of two runs, as a line and as JSON.
+void tell_saved(const ViewOptions& options, const StoredRun& run, size_t bytes,
+                const std::pair<std::string, std::string>& difference) {
   const std::string left = run.left_out();
   const size_t shown = run.form().shown();
-  options.answer.say("{}\n  {:<10} {}{}\n  {:<10} {}{}\n  {:<10} {:.3g} MB\n", line_text(options.save),
-                     "frames", run.frames(), left.empty() ? "" : " " + left, "particles", shown,
-                     shown < run.particles() ? fmt::format(" of {}", run.particles()) : "", "size",
-                     1e-6 * static_cast<double>(page.size()));
+  options.answer.say(
+      "{}\n  {:<10} {}{}\n  {:<10} {}{}\n  {:<10} {:.3g} MB\n{}", line_text(options.save), "frames",
+      run.frames(), left.empty() ? "" : " " + left, "particles", shown,
+      shown < run.particles() ? fmt::format(" of {}", run.particles()) : "", "size",
+      1e-6 * static_cast<double>(bytes),
+      difference.first.empty() ? "" : fmt::format("  {:<10} {}\n", "difference", difference.first));
   options.answer.close(json_object({{"file", json(options.save)},
                                     {"frames", std::to_string(run.frames())},
                                     {"particles", std::to_string(shown)},
-                                    {"bytes", std::to_string(page.size())}}));
+                                    {"bytes", std::to_string(bytes)},
+                                    {"difference", difference.second}}));
+}
+
+void save(const ViewOptions& options) {
+  check_writable(options.save);
+  const size_t limit = options.limit * 1000000;
+  if (options.with.empty()) {
+    const StoredRun run(options.what, options.every, options.particles);
+    const std::string page = saved_page(run, limit, options.every);
+    write_text(options.save, page);
+    tell_saved(options, run, page.size(), {"", "null"});
+    return;
+  }
+  const ComparedRuns runs(options.what, options.with, options.every, options.particles);
+  const std::string page = saved_page(runs, limit, options.every);
+  write_text(options.save, page);
+  const StoredRun& run = runs.first();
+  tell_saved(options, run, page.size(),
+             {verdict(runs.difference(), run.frames(), run.particles()), runs.difference().json()});
+}
+
+// --with is of two directories whose runs are over.
+void check_with(const ViewOptions& options) {
+  if (options.with.empty()) return;
+  for (const std::string& one : {options.what, options.with}) {
+    const std::string hint =
+        fmt::format("cuboct run SCENE --out DIR leaves one; then cuboct view {} --with {}",
+                    one == options.what ? "DIR" : options.what, one == options.what ? options.with : "DIR");
+    if (!std::filesystem::is_directory(one))
+      throw InputError(fmt::format("--with is of two runs that are over, and {} is no directory", one), hint);
+    if (is_locked(one))
+      throw InputError(fmt::format("--with is of two runs that are over, and that in {} goes on", one),
+                       "it can be compared once it has ended");
+  }
 }
 
 // The command line of `cuboct run`.
@@ -84,6 +119,7 @@ int view(const ViewOptions& options) {
     of_scene(!value->empty(), option);
   of_scene(options.force, "--force");
   of_scene(options.cycles, "--cycles");
+  check_with(options);
   if (!options.save.empty()) {
     if (!directory)
       throw InputError(
@@ -104,6 +140,7 @@ int view(const ViewOptions& options) {
                    options.particles_given,
                    !options.no_open,
                    options.answer};
+  if (!options.with.empty()) return watch_two(asked, options.with);
   if (directory) return watch_directory(asked);
   if (const std::vector<StageName> stages = stages_of(options.what); !stages.empty())
     throw InputError(fmt::format("{} is a scene of stages, each with a directory of its own", options.what),
@@ -129,6 +166,12 @@ void add_view(Command& app, int& exit_code) {
       .option("--save", options->save,
               "write the page as one file that needs no server and no network; of a DIR")
       .type_name("FILE.html");
+  command
+      .option(
+          "--with", options->with,
+          "of a DIR: beside this run of the same body, with one camera and one time line, and where the two "
+          "first differ")
+      .type_name("DIR");
   command
       .option("--every", options->every,
               "keep each N-th frame of those that the run kept, and the last; default: all")

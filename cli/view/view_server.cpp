@@ -56,8 +56,15 @@ std::shared_ptr<ViewSource> ViewServer::source() const {
   return source_;
 }
 
-HttpAnswer ViewServer::answer(const HttpAsked& asked) {
-  const std::shared_ptr<ViewSource> now = source();
+HttpAnswer ViewServer::answer(const HttpAsked& asked) { return answer_of(*source(), asked); }
+
+HttpAnswer ViewServer::answer_of(ViewSource& from, const HttpAsked& asked) const {
+  ViewSource* const now = &from;
+  constexpr std::string_view kWith = "with/";
+  if (asked.path.starts_with(kWith)) {
+    if (now->beside() == nullptr || asked.post) return {};
+    return answer_of(*now->beside(), {false, asked.path.substr(kWith.size()), asked.number});
+  }
   constexpr std::string_view kCommand = "command/";
   if (asked.path.starts_with(kCommand)) {
     if (!asked.post) return {405, {}, nullptr};

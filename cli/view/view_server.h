@@ -21,6 +21,7 @@ class ViewServer {
 
  private:
   HttpAnswer answer(const HttpAsked& asked);
+  HttpAnswer answer_of(ViewSource& from, const HttpAsked& asked) const;
   std::shared_ptr<ViewSource> source() const;
 
   mutable std::mutex guard_;  // of the pointer

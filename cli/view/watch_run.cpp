@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "cli/run/view.h"
+#include "cli/view/compared_runs.h"
 #include "cli/view/live_run.h"
 #include "cli/view/stored_run.h"
 #include "cli/view/view_server.h"
@@ -119,6 +120,16 @@ int watch_directory(const WatchAsked& asked) {
     if (interrupted() || show_what_is_left(asked, server, live)) break;
     while (!interrupted() && !is_locked(asked.directory)) poll(nullptr, 0, kLook);
   }
+  wait_for_interrupt();
+  return 0;
+}
+
+int watch_two(const WatchAsked& asked, const std::string& with) {
+  catch_interrupts();
+  const Scratch scratch;
+  ViewServer server(asked.port,
+                    std::make_shared<ComparedRuns>(asked.directory, with, asked.every, asked.particles));
+  tell(asked, server, scratch);
   wait_for_interrupt();
   return 0;
 }

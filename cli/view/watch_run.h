@@ -21,6 +21,8 @@ struct WatchAsked {
 
 // The exit code.
 int watch_directory(const WatchAsked& asked);
+// Two runs that are over, the other in that directory.
+int watch_two(const WatchAsked& asked, const std::string& with);
 // Starts `cuboct run` with these words, which is to leave its run in the directory. The exit code is that of
 // the run, if it failed before its first step.
 int watch_run(const WatchAsked& asked, const std::vector<std::string>& words);

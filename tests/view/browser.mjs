@@ -28,6 +28,9 @@ export async function open(browser, address, width, height, allowed = address) {
   return {page, problems, context};
 }
 
+// Whether anything is wider than the screen.
+export const too_wide = (page) => page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
+
 export const show = (page, frame) => page.evaluate((k) => cuboct.page.show(k), frame);
 export async function choose(page, place) {
   await page.evaluate((k) => cuboct.page.choose(k), place);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The page of a saved run in a browser, and the server. With `whole` also one of doubles, and pages of the server: a stored run, live ones.
+# The page of a saved run in a browser, that of two runs, and the server. With `whole` also one of doubles, and pages of the server: a stored run, live ones.
 # usage: page.sh quick|whole ROOT CUBOCT NODE CHROMIUM [PICTURES]
 set -euo pipefail
 tier=$1 root=$2 cuboct=$3 node=$4 chromium=$5 pictures=${6-}
@@ -19,8 +19,23 @@ saved() {  # NAME SCENE WORDS...
 }
 
 saved words scenes/two_types.toml --steps 60 --frame-every 30 --cycles
+
+compared() {  # NAME SCENE WORDS...: beside the run "words"
+  local name=$1 scene=$2
+  shift 2
+  "$cuboct" run "$scene" --quiet --frames none --out "$work/$name" "$@" >/dev/null
+  "$cuboct" view "$work/words" --with "$work/$name" --save "$work/$name.html"
+  for one in words "$name"; do /usr/bin/python3 "$here/trace_numbers.py" "$work/$one" all >"$work/all/$one.json"; done
+  "$node" "$here/compare_page_test.mjs" "$work/$name.html" "$work/all/words.json" "$work/all/$name.json" "$chromium" "$study_web" ${pictures:+"$pictures"}
+}
+
+mkdir "$work/all"
+# The same body, pulled faster: equal at first.
+sed 's/velocity = "\[20, 0, 40\] mm\/s"/velocity = "[20, 0, 44] mm\/s"/' "$root/scenes/two_types.toml" >"$work/faster.toml"
+compared faster "$work/faster.toml" --steps 30 --frame-every 15
 browser=-
 if [ "$tier" = whole ]; then
+  compared golden "$root/scenes/two_types.toml" --steps 60 --frame-every 20 --engine golden
   saved doubles scenes/lj_block.toml --steps 40 --frame-every 20 --engine reference
   browser=$chromium
 fi

@@ -173,6 +173,77 @@ TEST_F(View, RefusesPhasesOfAnotherMachine) {
   EXPECT_FALSE(fs::exists(path("foreign.html")));
 }
 
+// The line that the command prints, and what the page begins with.
+TEST_F(View, EqualRunsSaySo) {
+  const Answer ran =
+      bench_->cuboct({"run", "scenes/lj_block.toml", "--steps", "20", "--frame-every", "10", "--engine",
+                      "golden", "--quiet", "--frames", "none", "--out", path("golden")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const Answer answer = view({path("run"), "--with", path("golden"), "--save", path("both.html")});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("difference none in 3 frames of 256 particles\n"), std::string::npos)
+      << answer.out;
+  const std::string page = contents(path("both.html"));
+  EXPECT_NE(page.find("\"first\":null,\"particles\":[0,0,0],\"besides\":\"\""), std::string::npos);
+  EXPECT_EQ(blocks(page), 3U * 7);
+  EXPECT_EQ(blocks(page, "w-b"), 3U * 7);
+  EXPECT_EQ(blocks(page, "m-"), 0U);
+}
+
+// Other thermal velocities: from the first particle and the start on.
+TEST_F(View, FirstDifferenceIsThatOfTheTraces) {
+  std::string text = contents("scenes/lj_block.toml");
+  text.replace(text.find("seed = 1"), 8, "seed = 2");
+  std::ofstream(path("seed.toml")) << text;
+  const Answer ran = bench_->cuboct({"run", path("seed.toml"), "--steps", "10", "--frame-every", "5",
+                                     "--quiet", "--frames", "none", "--out", path("seed")});
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  const Answer answer = view({path("run"), "--with", path("seed"), "--save", path("both.html")});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("difference step 0, particle 0, velocity x: "), std::string::npos) << answer.out;
+  const int64_t a = read_trace(path("run") + "/trace.h5").frames[0].particles[0].v[0];
+  const int64_t b = read_trace(path("seed") + "/trace.h5").frames[0].particles[0].v[0];
+  EXPECT_NE(contents(path("both.html")).find(fmt::format("\"words\":[\"{}\",\"{}\"]", a, b)),
+            std::string::npos);
+}
+
+TEST_F(View, RefusesRunsOfDifferentBodies) {
+  const auto refused = [](std::vector<std::string> words) {
+    words.insert(words.end(), {"--save", path("never.html")});
+    const Answer answer = view(std::move(words));
+    EXPECT_EQ(answer.code, 2);
+    EXPECT_FALSE(fs::exists(path("never.html")));
+    return answer.err;
+  };
+  const auto run = [](const std::string& scene, const std::string& out) {
+    const Answer ran =
+        bench_->cuboct({"run", scene, "--steps", "2", "--quiet", "--frames", "none", "--out", path(out)});
+    ASSERT_EQ(ran.code, 0) << ran.err;
+  };
+  run("scenes/two_types.toml", "gels");
+  EXPECT_EQ(refused({path("run"), "--with", path("gels")}),
+            fmt::format("{} and {} are runs of different bodies: 256 and 270 particles\n  hint: --with takes "
+                        "a run of the same particles, in another engine or on another machine\n",
+                        path("run"), path("gels")));
+  std::string text = contents("scenes/lj_block.toml");
+  text.replace(text.find("dt = 0.004"), 10, "dt = 0.002");
+  std::ofstream(path("slow.toml")) << text;
+  run(path("slow.toml"), "slow");
+  EXPECT_EQ(refused({path("run"), "--with", path("slow")}),
+            fmt::format("the time step of {} is 0.004 s, and that of {} 0.002 s\n  hint: dt in [run] of the "
+                        "scene; runs of one time step have frames at the same times\n",
+                        path("run"), path("slow")));
+  EXPECT_EQ(refused({path("run"), "--with", path("nothing")}),
+            fmt::format("--with is of two runs that are over, and {1} is no directory\n  hint: cuboct run "
+                        "SCENE --out DIR leaves one; then cuboct view {0} --with DIR\n",
+                        path("run"), path("nothing")));
+  DirectoryLock lock(path("slow"), "a test");
+  EXPECT_EQ(refused({path("run"), "--with", path("slow")}),
+            fmt::format("--with is of two runs that are over, and that in {} goes on\n  hint: it can be "
+                        "compared once it has ended\n",
+                        path("slow")));
+}
+
 // A socket at which somebody listens and nobody takes a connection: that of a page whose process is stopped.
 class StoppedPage {
  public:

@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: MIT
 """What the trace of a run holds, by h5py, for the test of its page to compare with.
 
-usage: trace_numbers.py DIR >FILE.json"""
+usage: trace_numbers.py DIR [all] >FILE.json    all: of each particle"""
 import json
 import sys
 
 import h5py
 import numpy as np
 
-IDS = 24  # particles of each frame, spread over all
+IDS = 24 if "all" not in sys.argv[2:] else 10**9  # particles of each frame, spread over all
 
 
 def some(count):
-    return sorted({int(k) for k in np.linspace(0, count - 1, IDS)})
+    return sorted({int(k) for k in np.linspace(0, count - 1, min(IDS, count))})
 
 
 def fixed_frames(trace):

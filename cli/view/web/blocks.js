@@ -30,13 +30,15 @@ function bytes_in(id) {
 
 // What stands in the page itself.
 export class SavedFrames {
-  constructor(story) {
+  // `prefix`: of its elements; "w-" of the run that is compared with.
+  constructor(story, prefix = "") {
     this.story = story;
+    this.prefix = prefix;
     this.live = false;
   }
   async block(frame, index) {
     const form = this.story.head.blocks[index];
-    return joined(await unpacked(bytes_in(`b${frame}-${index}`)), kWidths[form.number]).buffer;
+    return joined(await unpacked(bytes_in(`${this.prefix}b${frame}-${index}`)), kWidths[form.number]).buffer;
   }
   // Words of the machine: "nodes" 0, "held" of a frame, "spans" of a step.
   async machine(name, k) {
@@ -51,12 +53,14 @@ export class SavedFrames {
 
 // What a server holds: its address ends in the token, and all that is asked lies below it.
 export class ServedFrames {
-  constructor(story) {
+  // `prefix`: of its paths; "with/" of the run that is compared with.
+  constructor(story, prefix = "") {
     this.story = story;
+    this.prefix = prefix;
     this.live = story.live;
   }
   async ask(path) {
-    const answer = await fetch(path, {cache: "no-store"});
+    const answer = await fetch(this.prefix + path, {cache: "no-store"});
     if (!answer.ok) throw Object.assign(new Error(`${path}: ${answer.status} ${await answer.text()}`), {status: answer.status});
     return answer;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Puts the page together: frames, colours, time line, cut, picking, and the run while it goes.
+import {Beside} from "./beside.js";
 import {SavedFrames, ServedFrames, array_of} from "./blocks.js";
 import {tell_particle} from "./chosen.js";
 import {gradient_of, kTypes, range_of, table_of, table_of_types} from "./colours.js";
@@ -20,11 +21,12 @@ class Page {
     this.held = null;
     this.charts = [];
     if (story.machine) this.machine = new Machine(this, source);
+    if (story.with) this.beside = new Beside(this, embedded.served ? new ServedFrames(story.with.story, "with/") : new SavedFrames(story.with.story, "w-"));
   }
 
   // What colours can be of: each field, of a vector its length and its parts.
-  choices() {
-    const {blocks, types} = this.story.head, found = [];
+  choices(head) {
+    const {blocks, types} = head, found = [];
     blocks.forEach((form, block) => {
       if (!form.field) return;
       const name = form.name.replaceAll("_", " ");
@@ -32,7 +34,7 @@ class Page {
       if (!form.components.length) found.push({name, block, part: 0, unit: form.unit});
       form.components.forEach((part, k) => found.push({name: `${name} ${part}`, block, part: k, unit: form.unit}));
     });
-    if (types.length > 1) found.push({name: "type", block: this.story.head.type, part: -2, unit: ""});
+    if (types.length > 1) found.push({name: "type", block: head.type, part: -2, unit: ""});
     return found;
   }
 
@@ -41,7 +43,7 @@ class Page {
     by_id("title").textContent = head.title;
     document.title = head.title;
     by_id("lead").textContent = this.lead();
-    this.colours = this.choices();
+    this.colours = this.choices(head);
     this.colours.forEach(({name}, k) => by_id("colour").append(new Option(name, String(k))));
     const first = this.colours.findIndex(({name}) => name === head.colour);
     by_id("colour").value = String(Math.max(0, first));
@@ -51,6 +53,7 @@ class Page {
     by_id("curves-none").hidden = this.charts.length > 0;
     by_id("what-part").hidden = !this.machine;
     this.machine?.begin();
+    this.beside?.begin();
     this.listen();
   }
   lead() {
@@ -79,21 +82,24 @@ class Page {
     on("what", "change", () => this.swap());
     for (const id of ["cut-axis", "cut-at", "cut-turn"]) on(id, "input", () => this.cut());
     document.querySelectorAll("#looks button").forEach((button) =>
-      button.addEventListener("click", () => this.stage?.look(button.dataset.look)));
+      button.addEventListener("click", () => this.stages().forEach((stage) => stage.look(button.dataset.look))));
     on("picture", "click", async () => save(await this.stage.picture(), `frame_${this.story.frames[this.frame].step}.png`));
-    const canvas = by_id("canvas");
+    this.picks(by_id("canvas"), (x, y) => (this.nodes_shown() ? this.machine.choose(this.stage.pick_node(x, y)) : this.choose(this.stage.pick(x, y))));
+    document.addEventListener("keydown", (event) => {
+      if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
+      const key = {ArrowLeft: "back", ArrowRight: "next", " ": "play"}[event.key];
+      if (key) event.preventDefault(), by_id(key).click();
+    });
+  }
+  stages() { return [this.stage, this.beside?.stage].filter(Boolean); }
+  // A click on a picture that does not turn it.
+  picks(canvas, pick) {
     let pressed = null;
     canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
     canvas.addEventListener("pointerup", (event) => {
       if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
       const box = canvas.getBoundingClientRect();
-      const x = event.clientX - box.left, y = event.clientY - box.top;
-      this.attempt(() => (this.nodes_shown() ? this.machine.choose(this.stage.pick_node(x, y)) : this.choose(this.stage.pick(x, y))));
-    });
-    document.addEventListener("keydown", (event) => {
-      if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
-      const key = {ArrowLeft: "back", ArrowRight: "next", " ": "play"}[event.key];
-      if (key) event.preventDefault(), by_id(key).click();
+      this.attempt(() => pick(event.clientX - box.left, event.clientY - box.top));
     });
   }
   async attempt(work) {
@@ -117,22 +123,25 @@ class Page {
   async fetch_frame(frame) {
     const {head, frames} = this.story, {step, time, lower, extent} = frames[frame];
     const places = array_of(head.blocks[0], await source.block(frame, 0));
-    if (!this.stage) {
-      this.stage = new Stage(by_id("canvas"), head, {step, lower, extent});
-      this.cut();
-    }
+    const others = this.beside && array_of(head.blocks[0], await this.beside.source.block(frame, 0));
+    const first = !this.stage;
+    if (first) this.stage = new Stage(by_id("canvas"), head, {step, lower, extent}, by_id("axes"));
     this.stage.show(places, {step, lower, extent});
+    this.beside?.show(others, frame, {step, lower, extent});
+    if (first) this.cut();
     this.frame = frame;
     await this.recolour();
     await this.tell_chosen();
     if (this.machine_shown()) await this.machine.show(frame);
     by_id("time").max = String(frames.length - 1);
     by_id("time").value = String(frame);
-    by_id("now").textContent = `frame ${frame + 1} of ${frames.length}, step ${step}${head.static ? "" : ", " + with_unit(time, head.reduced ? "" : "s", 5)}`;
+    by_id("now").textContent = `frame ${frame + 1} of ${frames.length}, step ${step}${head.static ? "" : ", " + with_unit(time, head.reduced ? "" : "s", 5)}` +
+      (this.beside ? `: ${this.beside.told(frame)}` : "");
     for (const chart of this.charts) chart.at(step);
     ++this.shown_count;
-    this.stage.draw();
+    this.draw();
   }
+  draw() { this.stages().forEach((stage) => stage.draw()); }
   shown_count = 0;
 
   // The machine, or particles. Where a run has no machine its particles stay, and a line says why.
@@ -153,18 +162,31 @@ class Page {
 
   async recolour() {
     if (this.nodes_shown()) return;
-    const choice = this.colours[Number(by_id("colour").value)], {head} = this.story, form = head.blocks[choice.block];
-    const all = array_of(form, await source.block(this.frame, choice.block));
-    const values = new Float32Array(all.length / form.numbers);
-    if (choice.part === -2) return this.colour_types(all, values);
-    for (let k = 0; k < values.length; ++k)
-      values[k] = choice.part >= 0 ? all[k * form.numbers + choice.part] : Math.hypot(all[3 * k], all[3 * k + 1], all[3 * k + 2]);
-    this.range = this.held || range_of(values);
+    const choice = this.colours[Number(by_id("colour").value)], values = [await this.values_of(source, this.story.head, choice)];
+    if (this.beside) {
+      const {head} = this.beside.story, same = this.choices(head).find(({name}) => name === choice.name);
+      values.push(same ? await this.values_of(this.beside.source, head, same) : new Float32Array(values[0].length).fill(NaN));
+    }
+    if (choice.part === -2) return this.colour_types(values);
+    // One range for both, so that equal colours are equal values.
+    const all = values.length === 1 ? values[0] : Float32Array.from({length: 2 * values[0].length}, (_, k) => values[k % 2][k >> 1]);
+    this.range = this.held || range_of(all);
     const kind = this.range.signed ? "diverging" : "viridis";
-    this.stage.cloud.table(table_of(kind), true);
-    this.stage.cloud.colour(values, this.range.low, this.range.high);
+    this.stages().forEach(({cloud}, k) => {
+      cloud.table(table_of(kind), true);
+      cloud.colour(values[k], this.range.low, this.range.high);
+    });
     this.tell_scale(choice.name + (this.range.empty ? ": not known" : ""), kind, number(this.range.low), with_unit(this.range.high, choice.unit));
-    this.stage.draw();
+    this.draw();
+  }
+  // A number for each particle of the frame.
+  async values_of(source, head, {block, part}) {
+    const form = head.blocks[block], all = array_of(form, await source.block(this.frame, block));
+    if (part === -2) return Float32Array.from(all, (type) => type + 0.5);
+    const values = new Float32Array(all.length / form.numbers);
+    for (let k = 0; k < values.length; ++k)
+      values[k] = part >= 0 ? all[k * form.numbers + part] : Math.hypot(all[3 * k], all[3 * k + 1], all[3 * k + 2]);
+    return values;
   }
   // What colours say: a scale between two numbers, or names.
   tell_scale(name, kind, low, high) {
@@ -185,34 +207,35 @@ class Page {
       return entry;
     }));
   }
-  colour_types(all, values) {
+  colour_types(values) {
     const {types} = this.story.head;
-    values.set(all);
-    for (let k = 0; k < values.length; ++k) values[k] += 0.5;
     this.range = {low: 0, high: types.length, signed: false};
-    this.stage.cloud.table(table_of_types(types.length), false);
-    this.stage.cloud.colour(values, 0, types.length);
+    this.stages().forEach(({cloud}, k) => {
+      cloud.table(table_of_types(types.length), false);
+      cloud.colour(values[k], 0, types.length);
+    });
     this.tell_list(types.map(({material, constraint}, k) => ({name: material + (constraint ? ", " + constraint : ""), colour: kTypes[k % kTypes.length]})));
-    this.stage.draw();
+    this.draw();
   }
   cut() {
     const axis = by_id("cut-axis").value;
     by_id("cut-at").disabled = by_id("cut-turn").disabled = !axis;
-    this.stage.cut(axis, Number(by_id("cut-at").value), by_id("cut-turn").checked);
-    this.stage.draw();
+    this.stages().forEach((stage) => stage.cut(axis, Number(by_id("cut-at").value), by_id("cut-turn").checked));
+    this.draw();
   }
 
   async choose(place) {
     this.chosen = place;
-    this.stage.choose(place);
+    this.stages().forEach((stage) => stage.choose(place));
     await this.tell_chosen();
   }
   async tell_chosen() {
     by_id("chosen-part").hidden = this.chosen < 0;
     by_id("chosen-none").hidden = this.chosen >= 0;
-    if (this.chosen < 0) return;
+    if (this.chosen < 0) return this.beside?.tell(this.frame, -1);
     const {frame, chosen} = this, still = () => frame === this.frame && chosen === this.chosen;
     this.exact = (await tell_particle(source, this.story, frame, chosen, this.id_of(chosen), by_id("chosen"), still)) || this.exact;
+    await this.beside?.tell(frame, chosen, this.id_of(chosen), still);
   }
   // Where a part is shown, it is every so-manieth particle.
   id_of(place) {
@@ -264,6 +287,7 @@ async function start() {
     page.begin();
     if (story.live) follow(page, source);
     if (story.frames.length > 0) await page.show(story.live ? story.frames.length - 1 : 0);
+    if (story.with?.difference.first) await page.beside.show_first();
     else by_id("now").textContent = story.live ? "no frame yet" : "the run kept no frames";
     by_id("ready").hidden = true;
   });

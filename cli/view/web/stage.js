@@ -21,7 +21,7 @@ function box_at({periodic, deform}, step) {
 
 export class Stage {
   // `box`: step, lower and extent in m of the frame that the camera begins with.
-  constructor(canvas, head, box) {
+  constructor(canvas, head, box, axes) {
     this.renderer = new WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: false});
     this.renderer.setClearColor(new Color("#ffffff"));
     this.renderer.localClippingEnabled = true;
@@ -29,7 +29,7 @@ export class Stage {
     this.cloud = new Cloud();
     this.scene.add(this.cloud.points);
     this.camera = new PerspectiveCamera(30, 1, 0.001, 1000);
-    this.axes = new Axes(document.getElementById("axes"));
+    this.axes = new Axes(axes);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.size = Math.max(...box.extent, 2 * head.radius) || 1;
@@ -50,6 +50,22 @@ export class Stage {
     this.fit();
   }
 
+  // Another picture that sees from where this one does.
+  lead(other) {
+    const follow = () => {
+      const {position, up} = other.camera, {target} = other.controls;
+      // Controls round, and would else answer one another for ever.
+      const apart = (a, b) => a.distanceToSquared(b) > 1e-12;
+      if (!apart(position, this.camera.position) && !apart(target, this.controls.target) && !apart(up, this.camera.up)) return;
+      position.copy(this.camera.position), up.copy(this.camera.up), target.copy(this.controls.target);
+      Object.assign(other.camera, {near: this.camera.near, far: this.camera.far});
+      other.camera.updateProjectionMatrix();
+      other.controls.update();
+      other.draw();
+    };
+    this.controls.addEventListener("change", follow);
+    follow();
+  }
   inner(place) {
     return place.map((x, k) => (x - this.middle[k]) / this.size);
   }
