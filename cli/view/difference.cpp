@@ -201,9 +201,10 @@ void check_comparable(const StoredRun& a, const StoredRun& b) {
   if (a.particles() != b.particles())
     refuse(fmt::format("{} and {} particles", a.particles(), b.particles()));
   if (packing_hash(sa) != packing_hash(sb)) refuse("their particles are packed at other places");
+  const char* unit = sa.boltzmann == 1 ? "" : " s";
   if (sa.rule.dt != sb.rule.dt)
-    throw InputError(fmt::format("the time step of {} is {} s, and that of {} {} s", a.directory(),
-                                 sa.rule.dt, b.directory(), sb.rule.dt),
+    throw InputError(fmt::format("the time step of {} is {}{}, and that of {} {}{}", a.directory(),
+                                 sa.rule.dt, unit, b.directory(), sb.rule.dt, unit),
                      "dt in [run] of the scene; runs of one time step have frames at the same times");
 }
 

@@ -66,7 +66,9 @@ async function numbers_are_those_of_both(page) {
       const exact = await page.evaluate(() => [cuboct.page.exact, cuboct.page.beside.exact].map(({x, v}) => [x, v]));
       frames.forEach((frame, run) => assert.deepEqual(exact[run], [frame.x[id], frame.v[id]], `particle ${id} of run ${"AB"[run]} at step ${frame.step}`));
       const red = await page.$$eval("#chosen-beside tr.differs", (all) => all.length);
-      assert.equal(red > 0, difference(frames[0], frames[1], id) !== null);
+      // Strains of a particle may differ where its own numbers do not.
+      if (difference(frames[0], frames[1], id)) assert.ok(red > 0);
+      if (await page.evaluate(() => cuboct.story.with.difference.first === null)) assert.equal(red, 0);
       ++compared;
     }
     const clouds = await page.evaluate(() => cuboct.page.stages().map(({cloud}) => [[...cloud.values], cloud.material.uniforms.range.value.toArray()]));

@@ -192,7 +192,7 @@ TEST_F(View, EqualRunsSaySo) {
 
 // Other thermal velocities: from the first particle and the start on.
 TEST_F(View, FirstDifferenceIsThatOfTheTraces) {
-  std::string text = contents("scenes/lj_block.toml");
+  std::string text = contents(CUBOCT_SOURCE_DIR "/scenes/lj_block.toml");
   text.replace(text.find("seed = 1"), 8, "seed = 2");
   std::ofstream(path("seed.toml")) << text;
   const Answer ran = bench_->cuboct({"run", path("seed.toml"), "--steps", "10", "--frame-every", "5",
@@ -225,12 +225,12 @@ TEST_F(View, RefusesRunsOfDifferentBodies) {
             fmt::format("{} and {} are runs of different bodies: 256 and 270 particles\n  hint: --with takes "
                         "a run of the same particles, in another engine or on another machine\n",
                         path("run"), path("gels")));
-  std::string text = contents("scenes/lj_block.toml");
+  std::string text = contents(CUBOCT_SOURCE_DIR "/scenes/lj_block.toml");
   text.replace(text.find("dt = 0.004"), 10, "dt = 0.002");
   std::ofstream(path("slow.toml")) << text;
   run(path("slow.toml"), "slow");
   EXPECT_EQ(refused({path("run"), "--with", path("slow")}),
-            fmt::format("the time step of {} is 0.004 s, and that of {} 0.002 s\n  hint: dt in [run] of the "
+            fmt::format("the time step of {} is 0.004, and that of {} 0.002\n  hint: dt in [run] of the "
                         "scene; runs of one time step have frames at the same times\n",
                         path("run"), path("slow")));
   EXPECT_EQ(refused({path("run"), "--with", path("nothing")}),
