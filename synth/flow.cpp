@@ -14,6 +14,7 @@
 #include "model/base/process.h"
 #include "synth/estimate.h"
 #include "synth/script.h"
+#include "synth/stage_time.h"
 #include "synth/stages.h"
 #include "synth/tool.h"
 
@@ -84,9 +85,6 @@ constexpr const char* kPlacement = "placement";
 constexpr const char* kBitstream = "bitstream";
 constexpr const char* kTiming = "timing";
 constexpr const char* kPower = "power";
-
-// Of a block, which yosys synthesises in seconds: docs/reference/synth.md, "Stages".
-constexpr uint64_t kFewBits = 2000;
 
 bool places(const Request& request, const Target& target) {
   return request.place && (target.family == Family::ice40 ||
@@ -201,7 +199,7 @@ class Flow {
     std::swap(named.out, s.out);
     key_.add(script(s));
     const uint64_t bits = bits_below(design, s.module);
-    stages_.expect(kSynthesis, bits <= kFewBits ? "seconds" : "a minute or more");
+    stages_.expect(kSynthesis, synthesis_time(target_.family, bits));
     stages_.found(fmt::format("{} modules, {} bits of cells", design.modules.size(), bits));
     stages_.make(kSynthesis, key_,
                  [&] { tools_.run("yosys synthesises", "yosys", "yosys", {out_ + "/synth.ys"}); });
