@@ -117,7 +117,8 @@ double lists_time(const EngineRow& engine, const Scene& scene, const Plan& plan,
 // `metal`. Engines that do not hand on the sums of their pairs take a step's time for those.
 double energies_time(const EngineRow& engine, const Scene& scene, double particles, double neighbours) {
   constexpr double kParticle = 300e-9, kPair = 10e-9;
-  const double sums = engine.here == Here::lattice ? 0 : cost_of(engine, scene, neighbours).neighbour_time * neighbours;
+  const double sums =
+      engine.here == Here::lattice ? 0 : cost_of(engine, scene, neighbours).neighbour_time * neighbours;
   return particles * (kParticle + kPair * neighbours / 2 + sums);
 }
 

@@ -38,7 +38,8 @@ struct StepsTogether {
  private:
   static constexpr int kRounds = Policy::kFixed ? 2 : 3;  // pairs that a lane has at a time
 
-  CUBOCT_DEVICE void share(uint32_t i, bool there, Pairs<Policy, Variant>& pairs, const PairLanes& lanes) const {
+  CUBOCT_DEVICE void share(uint32_t i, bool there, Pairs<Policy, Variant>& pairs,
+                           const PairLanes& lanes) const {
     const List& list = step.list;
     const uint32_t near_ones = there ? list.near(i) : 0, all = near_ones + (there ? list.further(i) : 0),
                    gap = there ? list.first_row(i) - near_ones : 0, most = lanes.most_of_warp(all);
@@ -75,7 +76,8 @@ struct StepsTogether {
           Policy::add(part[r], pairs.sum);  // in any order
         } else {
           CUBOCT_UNROLL
-          for (int lane = 0; lane < PairLanes::kCount; ++lane) Policy::add(lanes.from(part[r], lane), pairs.sum);
+          for (int lane = 0; lane < PairLanes::kCount; ++lane)
+            Policy::add(lanes.from(part[r], lane), pairs.sum);
         }
     }
     if constexpr (Policy::kFixed)

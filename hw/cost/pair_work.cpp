@@ -159,8 +159,8 @@ DatapathWork datapath_work(const Plan& plan, WorkOf of) {
     if (plan.words.bonds == 0) work.lane = lane_of(plan, axes, of);
     return work;
   }
-  DatapathWork work{pair_of(plan, axes), kick_of(plan, axes), lane_of(plan, axes, of),
-                    update_of(plan, axes), {}};
+  DatapathWork work{
+      pair_of(plan, axes), kick_of(plan, axes), lane_of(plan, axes, of), update_of(plan, axes), {}};
   if (of == WorkOf::built) work.cull = cull_of(plan, axes, work.lane);
   return work;
 }

@@ -11,8 +11,9 @@
 
 namespace cuboct {
 
-// Along each periodic axis L(n) = L0 (1 + strain + n per_step), with L0 of `packed` and n the last step of the
-// load that is not beyond the step asked for: a static load stands still between two. The box's origin stays.
+// Along each periodic axis L(n) = L0 (1 + strain + n per_step), with L0 of `packed` and n the last step of
+// the load that is not beyond the step asked for: a static load stands still between two. The box's origin
+// stays.
 struct BoxDeformation {
   Periodic packed;
   Vec3 strain = Vec3::Zero();    // 1, of step 0

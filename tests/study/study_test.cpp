@@ -155,7 +155,8 @@ TEST(Study, MistakesNameTheirPlace) {
   EXPECT_EQ(error_of(files, "[[sweep]]\narithmetic = \"fixd\"\n"),
             "study.toml:4:14: unknown arithmetic 'fixd'\n  hint: did you mean 'fixed'?");
   EXPECT_EQ(error_of(files, "[[sweep]]\nset.damping.ration = [0.1]\n"),
-            "study.toml:4:23: missing key 'coefficient' in 'damping'\n  hint: the value has the key 'ration': did you "
+            "study.toml:4:23: missing key 'coefficient' in 'damping'\n  hint: the value has the key "
+            "'ration': did you "
             "mean 'ratio'?");
   EXPECT_EQ(error_of(files, "[[sweep]]\nindex_bits = []\n"), "study.toml:4:14: 'index_bits' lists nothing");
   EXPECT_EQ(error_of(files, ""),

@@ -16,10 +16,14 @@ TEST(StageTime, MeasuredOnesLieInWhatIsTold) {
     uint64_t bits;
     double seconds;
   };
-  for (const Measured& m :
-       {Measured{Family::ice40, 374, 4}, {Family::ice40, 891, 7}, {Family::ice40, 35747, 65},
-        {Family::ecp5, 35747, 37}, {Family::xc7, 35747, 55}, {Family::ice40, 41176, 50},
-        {Family::ecp5, 41176, 53}, {Family::xc7, 41176, 53}}) {
+  for (const Measured& m : {Measured{Family::ice40, 374, 4},
+                            {Family::ice40, 891, 7},
+                            {Family::ice40, 35747, 65},
+                            {Family::ecp5, 35747, 37},
+                            {Family::xc7, 35747, 55},
+                            {Family::ice40, 41176, 50},
+                            {Family::ecp5, 41176, 53},
+                            {Family::xc7, 41176, 53}}) {
     const std::string told = synthesis_time(m.family, m.bits);
     double low = 0, high = 0;
     ASSERT_EQ(std::sscanf(told.c_str(), "%lf to %lf s", &low, &high), 2) << told;

@@ -36,7 +36,8 @@ constexpr double kClock = 1e8;
 MachineEvents events() {
   MachineEvents e;
   e.steps = 5 * block().nodes();
-  e.updates = 2000, e.candidates = 40000, e.entries = 20000, e.issues = 30000, e.pairs = 30000, e.kicks = 25000;
+  e.updates = 2000, e.candidates = 40000, e.entries = 20000, e.issues = 30000, e.pairs = 30000,
+  e.kicks = 25000;
   e.relayed = 9000, e.halos_x = 8000, e.beats = 12000;
   return e;
 }
@@ -127,15 +128,31 @@ TEST(Energy, TheSumIsThatOfAllTerms) {
     EXPECT_EQ(r.source, "made") << r.term;
   }
   EXPECT_EQ(e.sum, sum);
-  const std::vector<std::string> all{"pairs: products",   "pairs: adders",      "pairs: registers",
-                                     "kicks: products",   "kicks: adders",      "kicks: registers",
-                                     "filter: adders",    "filter: registers",  "update: adders",
-                                     "update: registers", "read own particles", "write own particles",
-                                     "read sums",         "write sums",         "links: registers",
-                                     "links: wires",      "wires within nodes", "clock: pairs",
-                                     "clock: kicks",      "clock: filter",     "clock: update",      "clock: links",
+  const std::vector<std::string> all{"pairs: products",
+                                     "pairs: adders",
+                                     "pairs: registers",
+                                     "kicks: products",
+                                     "kicks: adders",
+                                     "kicks: registers",
+                                     "filter: adders",
+                                     "filter: registers",
+                                     "update: adders",
+                                     "update: registers",
+                                     "read own particles",
+                                     "write own particles",
+                                     "read sums",
+                                     "write sums",
+                                     "links: registers",
+                                     "links: wires",
+                                     "wires within nodes",
+                                     "clock: pairs",
+                                     "clock: kicks",
+                                     "clock: filter",
+                                     "clock: update",
+                                     "clock: links",
                                      "clock: gates and control",
-                                     "leakage of logic",  "leakage of memories"};
+                                     "leakage of logic",
+                                     "leakage of memories"};
   EXPECT_EQ(terms, all);
 }
 
