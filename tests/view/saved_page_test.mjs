@@ -5,7 +5,6 @@ import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {pathToFileURL} from "node:url";
 import {choose, drawn, launch, open, show} from "./browser.mjs";
-import {a_film_has_its_frames} from "./film_checks.mjs";
 import {the_machine_fits, the_machine_is_that_of_the_trace} from "./machine_checks.mjs";
 
 const [path, numbers, chromium, study_web, pictures] = process.argv.slice(2);
@@ -187,8 +186,6 @@ try {
       await a_click_picks(page);
       await time_goes_both_ways(page);
       if (trace.machine) console.log(`${await the_machine_is_that_of_the_trace(page, trace, pictures)} numbers of the machine are those of the trace`);
-      // A film takes its time: of the page of doubles alone, which the full tests have.
-      else console.log(`${await a_film_has_its_frames(page, trace.frames.length)} pictures of a film`);
     }
     assert.equal(await page.isVisible("#live"), false);
     assert.equal(await page.isVisible("#problem"), false);

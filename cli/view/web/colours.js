@@ -11,7 +11,7 @@ const channels = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at 
 
 // 256 colours, four bytes each.
 export function table_of(kind) {
-  const stops = stops_of(kind).map(channels);
+  const stops = (kind === "diverging" ? kDiverging : kViridis).map(channels);
   const table = new Uint8Array(4 * 256);
   for (let k = 0; k < 256; ++k) {
     const at = (k / 255) * (stops.length - 1), left = Math.min(Math.floor(at), stops.length - 2), part = at - left;
@@ -30,10 +30,9 @@ export function table_of_types(count) {
   return table;
 }
 
-export const stops_of = (kind) => (kind === "diverging" ? kDiverging : kViridis);
-
 export function gradient_of(kind) {
-  return `linear-gradient(to right, ${stops_of(kind).join(", ")})`;
+  const stops = kind === "diverging" ? kDiverging : kViridis;
+  return `linear-gradient(to right, ${stops.join(", ")})`;
 }
 
 // Between which the middle 98 of 100 values are: few that flew off would else take all colours. Of values with a sign it is even

@@ -173,25 +173,14 @@ export class Machine {
     by_id("timeline").replaceChildren(...(this.spans ? [timeline_of(this)] : []));
   }
 
-  // Cycle by cycle, or so many at a time that a step takes ten seconds: what shows the next, and answers whether there was one.
-  pictures() {
-    let at = 0;
-    return async () => {
-      const last = this.spans.length - 1;
-      if (at > last) return false;
-      this.cycle = at;
-      at = at === last ? last + 1 : Math.min(last, at + this.pace());
-      this.colour();
-      return true;
-    };
-  }
-  pace() { return Math.max(1, Math.ceil(this.spans.length / kPasses)); }
+  // Cycle by cycle, or so many at a time that a step takes ten seconds.
   play() {
     this.playing = !this.playing;
     by_id("play-cycles").textContent = this.playing ? "stop" : "play cycles";
+    const by = Math.max(1, Math.ceil(this.spans.length / kPasses));
     const next = () => {
       if (!this.playing) return;
-      this.cycle = Math.min(this.spans.length - 1, this.cycle + this.pace());
+      this.cycle = Math.min(this.spans.length - 1, this.cycle + by);
       this.colour();
       if (this.cycle === this.spans.length - 1) this.play();
       else setTimeout(next, 1000 / kRate);

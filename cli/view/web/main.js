@@ -3,9 +3,8 @@
 import {Beside} from "./beside.js";
 import {SavedFrames, ServedFrames, array_of} from "./blocks.js";
 import {tell_particle} from "./chosen.js";
-import {gradient_of, kTypes, range_of, stops_of, table_of, table_of_types} from "./colours.js";
+import {gradient_of, kTypes, range_of, table_of, table_of_types} from "./colours.js";
 import {charts_of} from "./curves.js";
-import {film, kind_of_film, still} from "./film.js";
 import {by_id, element, number, with_unit} from "./format.js";
 import {follow} from "./live.js";
 import {Machine} from "./machine.js";
@@ -84,10 +83,7 @@ class Page {
     for (const id of ["cut-axis", "cut-at", "cut-turn"]) on(id, "input", () => this.cut());
     document.querySelectorAll("#looks button").forEach((button) =>
       button.addEventListener("click", () => this.stages().forEach((stage) => stage.look(button.dataset.look))));
-    on("picture", "click", async () => save(await (this.beside ? still(this) : this.stage.picture()), `frame_${this.story.frames[this.frame].step}.png`));
-    on("film", "click", () => this.film());
-    by_id("film").disabled = !kind_of_film();
-    if (!kind_of_film()) by_id("film").title = "this browser records no films";
+    on("picture", "click", async () => save(await this.stage.picture(), `frame_${this.story.frames[this.frame].step}.png`));
     this.picks(by_id("canvas"), (x, y) => (this.nodes_shown() ? this.machine.choose(this.stage.pick_node(x, y)) : this.choose(this.stage.pick(x, y))));
     document.addEventListener("keydown", (event) => {
       if (["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName)) return;
@@ -194,7 +190,6 @@ class Page {
   }
   // What colours say: a scale between two numbers, or names.
   tell_scale(name, kind, low, high) {
-    this.stops = stops_of(kind);
     by_id("legend-bar").style.background = gradient_of(kind);
     by_id("legend").hidden = false;
     by_id("types").hidden = true;
@@ -246,34 +241,6 @@ class Page {
   id_of(place) {
     const {particles, shown} = this.story.head;
     return Math.floor((place * particles) / shown);
-  }
-
-  // What the picture shows, in words.
-  told() {
-    const cycles = this.nodes_shown() && this.machine.spans ? `; the machine's step ${this.machine.step}, cycle ${this.machine.cycle}` : "";
-    return by_id("now").textContent + cycles;
-  }
-  // Of the time line; of the machine's phases the cycles of the step.
-  async film() {
-    this.filming = !this.filming;
-    by_id("film").textContent = this.filming ? "end the film" : "record a film";
-    if (!this.filming) return;
-    const last = this.story.frames.length - 1, cycles = this.nodes_shown() && this.machine.choice().key === "phase";
-    let next = 0;
-    const pictures = cycles ? this.machine.pictures() : async () => {
-      if (next > last) return false;
-      await this.show(next++);
-      return true;
-    };
-    if (!cycles) await this.show(0);
-    try {
-      const {blob, count} = await film(this, pictures, () => this.filming);
-      this.filmed = {blob, count};
-      save(blob, "film.webm");
-    } finally {
-      this.filming = false;
-      by_id("film").textContent = "record a film";
-    }
   }
 
   play() {
