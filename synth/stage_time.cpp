@@ -17,7 +17,7 @@ double rounded(double seconds) {
 }  // namespace
 
 std::string synthesis_time(Family family, uint64_t bits) {
-  constexpr double kLeast = 4, kBit = 1.25e-3, kBitAsic = 7e-3;  // s
+  constexpr double kLeast = 4, kBit = 1.25e-3, kBitAsic = 1.1e-2;  // s
   const double seconds = kLeast + (family == Family::asic ? kBitAsic : kBit) * static_cast<double>(bits);
   const double low = rounded(seconds / 2), high = rounded(2 * seconds);
   if (low < 60) return fmt::format("{:.0f} to {:.0f} s", low, high);
