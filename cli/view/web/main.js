@@ -286,8 +286,8 @@ async function start() {
   await page.attempt(async () => {
     page.begin();
     if (story.live) follow(page, source);
-    if (story.frames.length > 0) await page.show(story.live ? story.frames.length - 1 : 0);
     if (story.with?.difference.first) await page.beside.show_first();
+    else if (story.frames.length > 0) await page.show(story.live ? story.frames.length - 1 : 0);
     else by_id("now").textContent = story.live ? "no frame yet" : "the run kept no frames";
     by_id("ready").hidden = true;
   });
