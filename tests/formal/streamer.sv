@@ -97,8 +97,8 @@ module streamer_formal #(
   logic [RowBits-1:0]  row;
   logic                present;
   cuboct_streamer #(
-    .Segments(Segments), .Arrival(Arrival), .Rounds(Rounds), .FilterLanes(FilterLanes), .RowBits(RowBits), .SlotBits(AddrBits),
-    .AddrBits(AddrBits), .CountBits(CountBits)
+    .Segments(Segments), .Arrival(Arrival), .Rounds(Rounds), .FilterLanes(FilterLanes), .RowBits(RowBits),
+    .SlotBits(AddrBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .own_i(counts_q[0 +: CountBits]),
     .complete_i(complete), .came_i(come[Segments-1:1]), .again_i(again),
