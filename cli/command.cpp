@@ -53,15 +53,7 @@ Loaded load(const Input& input) {
 
 Loaded load_machine(const Input& input) {
   Loaded loaded{load_scene(input.scene, {input.stage, input.from, input.looks_only}), {}};
-  const Scene& scene = loaded.scene;
-  refuse_deform(scene, "a machine");
-  const Arch arch = read_arch(input.arch);
-  if (scene.rule.rounds == nullptr) {
-    loaded.setup = make_setup(scene, arch);
-    return loaded;
-  }
-  loaded.setup.plan = program_plan_of(scene, arch, CellForm::cubes);
-  with_places(scene, arch, [&] { loaded.setup.initial = begin_of(scene, loaded.setup.plan, nullptr); });
+  loaded.setup = machine_setup(loaded.scene, read_arch(input.arch));
   return loaded;
 }
 

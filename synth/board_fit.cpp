@@ -78,7 +78,7 @@ InputError no_room(const std::string& scene, const Plan& plan, const Board& boar
                                  counted(std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(
                                                                    particles * static_cast<double>(cells)))),
                                          "particle"));
-  if (!plan.program) hint += fmt::format("--fit {} looks for a machine that fits, ", board.target);
+  hint += fmt::format("--fit {} looks for a machine that fits, ", board.target);
   hint += "--unchecked writes this one for the simulator";
   return InputError(what, hint);
 }
@@ -90,11 +90,9 @@ FitCheck check_board_fit(const std::string& scene, const Plan& plan, const State
   const Board& board = board_of(choice.name);
   const Target& target = target_of(board.target);
   const FitAmounts room = room_of(target);
-  if (!plan.arch.narrow_memories && !plan.program) {
+  if (!plan.arch.narrow_memories) {
     Counts counts;
-    NodeMemories memories(plan.rule, plan.arch, plan.particles);
-    for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
-      counts += memory_counts(target.family, m);
+    for (const NodeMemory& m : memories_of(plan)) counts += memory_counts(target.family, m);
     const NodeUse use{amounts_of(counts), {}};
     FitAmounts surely = times(room, kSurely);
     for (size_t r = 0; r < kFitted.size(); ++r)

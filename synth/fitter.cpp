@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "hw/engine/scene_engine.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/interrupt.h"
 #include "model/config/changes.h"
@@ -83,12 +84,17 @@ Fitter::Fitter(const std::string& scene, const std::string& arch, const Target& 
       scene_(read_scene(scene)),
       arch_text_(text_of(arch)),
       arch_(least(parse_arch(arch_text_, arch))),
-      base_(make_setup(scene_, arch_)),
-      census_(base_.plan.rule, base_.plan.lattice, base_.initial),
+      base_(machine_setup(scene_, arch_)),
+      census_(base_.plan, base_.initial),
       loads_(base_.plan, census_),
-      memories_(base_.plan.rule, base_.plan.arch, base_.plan.particles),
       room_(room_of(target)) {
-  arch_ = base_.plan.arch;                                                       // with what was automatic
+  arch_ = base_.plan.arch;  // with what was automatic
+  if (base_.plan.program != nullptr) {
+    check_emission(base_.plan, {.board = board_});
+    rule_memories_ = memories_of(base_.plan);
+  } else {
+    memories_.emplace(base_.plan.rule, base_.plan.arch, base_.plan.particles);
+  }
   if (!arch_.narrow_memories) with_choice(arch_text_, arch, {{1, 1, 1}, 1, 1});  // can take a choice
 }
 
@@ -102,9 +108,14 @@ Plan Fitter::plan_at(const FitPoint& point) const {
 
 FitAmounts Fitter::memories(const Cell& brick, int lanes, int pipes, Family family) {
   if (arch_.narrow_memories) return {};
+  if (base_.plan.program != nullptr) {
+    Counts counts;
+    for (const NodeMemory& m : rule_memories_) counts += memory_counts(family, m);
+    return amounts_of(counts);
+  }
   const auto count = [&](int of_pipes) {
     Counts counts;
-    for (const NodeMemory& m : memories_.of(brick, lanes, of_pipes)) counts += memory_counts(family, m);
+    for (const NodeMemory& m : memories_->of(brick, lanes, of_pipes)) counts += memory_counts(family, m);
     return amounts_of(counts);
   };
   if (family != target_.family) return count(pipes);
@@ -178,7 +189,7 @@ void Fitter::find_shapes() {
   space_.most_lanes = space_.most_pipes = std::min(64, fullest(census_, lattice.size()));
   for (const Cell& brick : possible_bricks(lattice)) {
     const uint64_t cells = cells_of(brick);
-    if (cells > 1 && !no_bricks_.empty()) break;
+    if (cells > 1 && (one_cell() || !no_bricks_.empty())) break;
     if (!fit_memories(target_, brick, (lattice.size() + cells - 1) / cells)) continue;
     const uint32_t nodes = count_bricks(lattice, brick);
     if (fit_memories(target_, brick, nodes)) space_.shapes.push_back({brick, nodes});
@@ -277,6 +288,6 @@ std::string Fitter::arch_text() const {
   return fmt::format("{}{} chose them.\n{}", kHeading, target_.name, text);
 }
 
-Setup Fitter::setup() const { return make_setup(scene_, parse_arch(arch_text(), "arch.toml")); }
+Setup Fitter::setup() const { return machine_setup(scene_, parse_arch(arch_text(), "arch.toml")); }
 
 }  // namespace cuboct::synth

@@ -61,7 +61,10 @@ class Fitter {
   };
 
   Plan plan_at(const FitPoint& point) const;
+  // Of a rule of text those of one lane and one pipe: what more lanes and pipes add is measured.
   FitAmounts memories(const Cell& brick, int lanes, int pipes, Family family);
+  // One cell a node, as narrow memories and rules of text have it.
+  bool one_cell() const { return arch_.narrow_memories || base_.plan.program != nullptr; }
   FitAmounts estimate(const FitShape& shape, int lanes, int pipes);
   FitAmounts uses(const FitShape& shape, int lanes, int pipes);
   std::optional<uint64_t> cycles(const FitPoint& point);
@@ -99,7 +102,8 @@ class Fitter {
   Setup base_;
   PairCensus census_;
   FitLoads loads_;
-  NodeMemories memories_;
+  std::optional<NodeMemories> memories_;   // of the pair law
+  std::vector<NodeMemory> rule_memories_;  // of a rule of text
   FitAmounts room_;
   FitSpace space_;
   FitModel model_;

@@ -118,7 +118,7 @@ std::string Fitter::table() {
     return (size + cells_of(b) - 1) / cells_of(b);
   };
   std::vector<Cell> bricks;
-  if (!arch_.narrow_memories) bricks = possible_bricks(base_.plan.lattice);
+  if (!one_cell()) bricks = possible_bricks(base_.plan.lattice);
   std::ranges::stable_sort(bricks, {}, least_nodes);
   std::map<uint32_t, FitSpace> without_room;
   for (const Cell& brick : bricks) {
@@ -187,6 +187,8 @@ std::string Fitter::table() {
   if (!errors.empty()) text += fmt::format("{:<16} {}\n", "estimate's error", errors);
   if (arch_.narrow_memories)
     text += fmt::format("{:<16} {}\n", "note", "memories = \"narrow\" have one lane, one pipe and no bricks");
+  if (base_.plan.program != nullptr)
+    text += fmt::format("{:<16} {}\n", "note", "nodes of a rule of text have one cell");
   if (!no_bricks_.empty())
     text +=
         fmt::format("{:<16} {}\n", "note", "without bricks: " + no_bricks_.substr(0, no_bricks_.find('\n')));
@@ -211,7 +213,7 @@ const Target* Fitter::other_device() {
     return has_room(all, room_of(t));
   };
   std::vector<Cell> bricks =
-      arch_.narrow_memories || !no_bricks_.empty() ? std::vector<Cell>{{1, 1, 1}} : possible_bricks(lattice);
+      one_cell() || !no_bricks_.empty() ? std::vector<Cell>{{1, 1, 1}} : possible_bricks(lattice);
   for (const Target* t : others)
     for (const Cell& brick : bricks)
       if (fits(*t, brick, (lattice.size() + cells_of(brick) - 1) / cells_of(brick)) &&
@@ -231,7 +233,7 @@ FitAmounts Fitter::least_uses(const Cell& brick, uint64_t nodes) {
 
 // The most cells that the device has room for, in bricks of any shape, with one lane and one pipe.
 uint64_t Fitter::cells_that_fit() {
-  const bool flat = base_.plan.rule.axes == 2, single = arch_.narrow_memories || !no_bricks_.empty();
+  const bool flat = base_.plan.rule.axes == 2, single = one_cell() || !no_bricks_.empty();
   uint64_t most = 0;
   for (int32_t z = 1; z <= (flat || single ? 1 : kMostBrickCells); ++z)
     for (int32_t y = z; y * z <= (single ? 1 : kMostBrickCells); ++y)
@@ -264,7 +266,7 @@ void Fitter::refuse() {
   // By the least number of nodes, which no count is below; counted until none of the rest can be nearer.
   std::vector<std::pair<double, Cell>> bricks;
   for (const Cell& brick : possible_bricks(lattice)) {
-    if (cells_of(brick) > 1 && (arch_.narrow_memories || !no_bricks_.empty())) break;
+    if (cells_of(brick) > 1 && (one_cell() || !no_bricks_.empty())) break;
     const uint64_t nodes = (lattice.size() + cells_of(brick) - 1) / cells_of(brick);
     bricks.emplace_back(worst_share(least_uses(brick, nodes), room_).share, brick);
   }

@@ -25,13 +25,11 @@ double dsps(const Product& p) { return p.count * pieces(p.a, 18) * pieces(p.b, 1
 
 Counts memories_of(const Plan& plan, Family family) {
   Counts counts;
-  const Arch& arch = plan.arch;
-  for (const NodeMemory& m :
-       NodeMemories(plan.rule, arch, plan.particles).of(arch.brick, arch.filter_lanes, arch.force_pipes))
-    counts += memory_counts(family, m);
+  for (const NodeMemory& m : cuboct::memories_of(plan)) counts += memory_counts(family, m);
+  if (plan.program != nullptr) return counts;
   for (const TableWords& t : datapath_work(plan).pair.tables) {
     Counts table = memory_counts(family, {"table", t.words, t.bits, 1, NodeMemory::Kind::block, 1});
-    for (int pipe = 0; pipe < arch.force_pipes; ++pipe) counts += table;
+    for (int pipe = 0; pipe < plan.arch.force_pipes; ++pipe) counts += table;
   }
   return counts;
 }

@@ -10,6 +10,7 @@
 #include "cli/machine/technologies.h"
 #include "cli/study/machine_devices.h"
 #include "cli/study/study_command.h"
+#include "hw/engine/scene_engine.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
@@ -46,7 +47,7 @@ study::Case case_of(const MachineStudy& study, const MachineChoice& choice) {
 }
 
 Setup setup_of(const study::Case& c) {
-  return with_places(c.scene, c.arch, [&] { return make_setup(c.scene, c.arch); });
+  return with_places(c.scene, c.arch, [&] { return machine_setup(c.scene, c.arch); });
 }
 
 class Exploration {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/base/integer_math.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct {
 namespace {
@@ -15,9 +16,10 @@ namespace {
 // receiver's register.
 constexpr uint64_t kEndBeat = 2;
 
-// Records that a node sends in each exchange, and the empty segments that it passes, a cycle each.
+// Records that a node sends in each exchange, its segments, and those that are empty, which take a cycle
+// each.
 struct Sends {
-  std::array<uint64_t, 3> records{}, empty{};
+  std::array<uint64_t, 3> records{}, segments{}, empty{};
 };
 
 // Nodes that serve bricks: the same way through their phases.
@@ -127,6 +129,16 @@ uint32_t count_pairs(const FixedRule& rule, const std::vector<const Particle*>& 
   return count;
 }
 
+// To particles of the cell `near`, which is met over one way alone: rings have three cells at least.
+uint32_t count_bonds(const graph::BondRows& rows, const std::vector<const Particle*>& own,
+                     const std::vector<uint32_t>& cell_of, uint32_t near) {
+  uint32_t count = 0;
+  for (const Particle* i : own)
+    for (uint64_t b = rows.first[i->id]; b < rows.first[i->id + 1]; ++b)
+      count += cell_of[rows.other[b]] == near;
+  return count;
+}
+
 // Cycles that a node with narrow memories takes to bring its candidates and walk its slots: a candidate's
 // words are read, then it meets one slot after the other, and waits for the pipe where it has hits.
 uint64_t narrow_walk(const Plan& plan, const Held& held, uint32_t n) {
@@ -159,6 +171,7 @@ ExpectedCycles single_cycles(const Plan& plan, Particles particles, Pairs pairs_
     for (uint32_t n = 0; n < lattice.size(); ++n)
       for (int s = 0; s < 1 + 2 * axis; ++s) {
         sends[n].records[axis] += segment[n][s];
+        ++sends[n].segments[axis];
         sends[n].empty[axis] += segment[n][s] == 0;
       }
     for (uint32_t n = 0; n < lattice.size(); ++n)
@@ -167,47 +180,49 @@ ExpectedCycles single_cycles(const Plan& plan, Particles particles, Pairs pairs_
           segment[n][1 + face] = sends[lattice.neighbour(n, face)].records[axis];
   }
 
-  const auto beats = static_cast<uint64_t>(plan.words.halo_beats);
   const uint64_t end_beat = kEndBeat + static_cast<uint64_t>(plan.link.latency);
   // A migrate phase in which nothing moves: end beats, their way, one cycle to leave each face's FIFO.
   const uint64_t quiet_migrate = 1 + end_beat + 2;
-  const auto send_time = [&](uint32_t n, int axis) {
-    return sends[n].records[axis] * beats + sends[n].empty[axis] + 1;
+  const auto send_time = [&](uint32_t n, int axis, uint64_t beats) {
+    const Sends& s = sends[n];
+    return beats == 0 ? s.segments[axis] + 1 : s.records[axis] * beats + s.empty[axis] + 1;
   };
   ExpectedCycles expected;
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     const uint64_t own = segment[n][0];
     const uint64_t passes = ceil_div(own, static_cast<uint64_t>(plan.arch.filter_lanes));
-    std::array<uint64_t, 3> exchanged{};  // the cycle at which each exchange is over
-    uint64_t now = 0;
-    for (int axis = 0; axis < axes; ++axis) {
-      uint64_t longest = send_time(n, axis);
-      for (int face = 2 * axis; face < 2 * axis + 2; ++face)
-        if (lattice.neighbour(n, face) != kNoCell)
-          longest = std::max(longest, send_time(lattice.neighbour(n, face), axis));
-      exchanged[axis] = now += longest + end_beat;
-    }
-    uint64_t streamed = plan.arch.overlap ? 0 : now;
-    uint64_t candidates = 0;
-    for (int s = 0; s < 1 + 2 * axes; ++s) {
-      if (s > 0 && plan.arch.overlap) streamed = std::max(streamed, exchanged[(s - 1) / 2]);
-      const uint64_t work = segment[n][s] * passes;
-      streamed += std::max<uint64_t>(work, 1);
-      candidates += work;
-    }
     const uint64_t pairs = own > 0 ? pairs_of(n) : 0;
-    streamed = std::max(streamed, now + walk(n));
     const uint64_t issues = ceil_div(pairs, static_cast<uint64_t>(plan.arch.force_pipes)) *
                             static_cast<uint64_t>(plan.latency.interval);
-    const uint64_t busy = std::max(candidates, issues);
-    expected.ideal = std::max(expected.ideal, busy);
-    // The last candidate's pairs pass F1, the queue and `current`, then the pipe.
-    const uint64_t force = std::max(streamed + static_cast<uint64_t>(plan.latency.filter), issues) +
-                           (own > 0 ? 2 + static_cast<uint64_t>(plan.latency.pipe) : 0);
-    const uint64_t update = own > 0 ? (own - 1) * static_cast<uint64_t>(plan.latency.stride) +
-                                          static_cast<uint64_t>(plan.latency.update)
-                                    : 1;
-    expected.step = std::max(expected.step, force + update + static_cast<uint64_t>(axes) * quiet_migrate);
+    uint64_t candidates = 0;
+    for (int s = 0; s < 1 + 2 * axes; ++s) candidates += segment[n][s] * passes;
+    expected.ideal = std::max(expected.ideal, plan.rounds.size() * std::max(candidates, issues));
+    uint64_t step = static_cast<uint64_t>(axes) * quiet_migrate;
+    for (const PlanRound& round : plan.rounds) {
+      std::array<uint64_t, 3> exchanged{};  // the cycle of the round at which each exchange is over
+      uint64_t now = 0;
+      for (int axis = 0; axis < axes; ++axis) {
+        const auto beats = static_cast<uint64_t>(round.beats);
+        uint64_t longest = send_time(n, axis, beats);
+        for (int face = 2 * axis; face < 2 * axis + 2; ++face)
+          if (lattice.neighbour(n, face) != kNoCell)
+            longest = std::max(longest, send_time(lattice.neighbour(n, face), axis, beats));
+        exchanged[axis] = now += longest + end_beat;
+      }
+      uint64_t streamed = plan.arch.overlap ? 0 : now;
+      for (int s = 0; s < 1 + 2 * axes; ++s) {
+        if (s > 0 && plan.arch.overlap) streamed = std::max(streamed, exchanged[(s - 1) / 2]);
+        streamed += std::max<uint64_t>(segment[n][s] * passes, 1);
+      }
+      streamed = std::max(streamed, now + walk(n));
+      // The last candidate's pairs pass F1, the queue and `current`, then the pipe.
+      step += std::max(streamed + static_cast<uint64_t>(plan.latency.filter), issues) +
+              (own > 0 ? 2 + static_cast<uint64_t>(round.pipe) : 0);
+      step += own > 0 ? (own - 1) * static_cast<uint64_t>(plan.latency.stride) +
+                            static_cast<uint64_t>(round.finish)
+                      : 1;
+    }
+    expected.step = std::max(expected.step, step);
   }
   return expected;
 }
@@ -262,15 +277,26 @@ ExpectedCycles arrival_cycles(const Plan& plan, const PairCensus& census) {
 
 }  // namespace
 
-PairCensus::PairCensus(const FixedRule& rule, const Lattice& lattice, const State& state)
-    : particles_(lattice.size()), pairs_(lattice.size()) {
+PairCensus::PairCensus(const Plan& plan, const State& state)
+    : particles_(plan.lattice.size()), pairs_(plan.lattice.size()) {
+  const Lattice& lattice = plan.lattice;
   const Held held = held_by(lattice, state);
+  const auto at = [](const Cell& offset) {
+    return place(
+        {static_cast<int8_t>(offset[0]), static_cast<int8_t>(offset[1]), static_cast<int8_t>(offset[2])});
+  };
+  const graph::BondRows* rows = plan.program == nullptr ? nullptr : plan.program->rows.get();
+  std::vector<uint32_t> cell_of;  // by id, of a bonded rule
+  if (rows != nullptr) {
+    cell_of.resize(rows->first.size() - 1);
+    for (const Particle& p : state.particles) cell_of.at(p.id) = p.cell;
+  }
   for (uint32_t n = 0; n < lattice.size(); ++n) {
     particles_[n] = held[n].size();
     if (held[n].empty()) continue;
     for (const auto& [other, offset] : lattice.neighbourhood(n))
-      pairs_[n][place({static_cast<int8_t>(offset[0]), static_cast<int8_t>(offset[1]),
-                       static_cast<int8_t>(offset[2])})] = count_pairs(rule, held[n], held[other], offset);
+      pairs_[n][at(offset)] = rows != nullptr ? count_bonds(*rows, held[n], cell_of, other)
+                                              : count_pairs(plan.rule, held[n], held[other], offset);
   }
 }
 
@@ -287,8 +313,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const PairCensus& census) {
 }
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
-  if (!plan.bricks.one_cell() || plan.arch.halos == Halos::arrival)
-    return expected_cycles(plan, PairCensus(plan.rule, plan.lattice, state));
+  if (!plan.arch.narrow_memories) return expected_cycles(plan, PairCensus(plan, state));
   const Held held = held_by(plan.lattice, state);
   return single_cycles(
       plan, [&](uint32_t n) { return held[n].size(); },
@@ -298,7 +323,7 @@ ExpectedCycles expected_cycles(const Plan& plan, const State& state) {
           pairs += count_pairs(plan.rule, held[n], held[other], offset);
         return pairs;
       },
-      [&](uint32_t n) { return plan.arch.narrow_memories ? narrow_walk(plan, held, n) : uint64_t{0}; });
+      [&](uint32_t n) { return narrow_walk(plan, held, n); });
 }
 
 }  // namespace cuboct

@@ -11,11 +11,12 @@
 
 namespace cuboct {
 
-// How many particles each cell holds, and how many pairs of those of two cells pass the planar test. The same
-// for every brick and all numbers of lanes and pipes, so counted once where plans are compared.
+// How many particles each cell holds, and how many pairs of those of two cells the filter lets pass: by the
+// planar test, or of a bonded rule the bonds. The same for every brick and all numbers of lanes and pipes, so
+// counted once where plans are compared.
 class PairCensus {
  public:
-  PairCensus(const FixedRule& rule, const Lattice& lattice, const State& state);
+  PairCensus(const Plan& plan, const State& state);
   uint64_t particles(uint32_t cell) const { return particles_[cell]; }
   // With those of the cell at `offset`, -1 ... 1 along each axis.
   uint64_t pairs(uint32_t cell, const std::array<int8_t, 3>& offset) const {
@@ -36,11 +37,11 @@ struct ExpectedCycles {
   uint64_t ideal = 0;  // per step: what filter lanes and force pipes of the busiest node need at full use
   uint64_t step =
       0;  // per step: the slowest node's way through the phases of docs/reference/node.md, with none of its
-          // particles leaving, no full queue, and neighbours that begin each phase when it does
+          // particles leaving, no full queue, and neighbours that begin each phase of each round when it does
 };
 
 ExpectedCycles expected_cycles(const Plan& plan, const State& state);
-// The same, of a plan without narrow memories, with a census of the plan's rule, lattice and state.
+// The same, of a plan without narrow memories, with a census of the plan's particles.
 ExpectedCycles expected_cycles(const Plan& plan, const PairCensus& census);
 
 }  // namespace cuboct

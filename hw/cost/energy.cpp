@@ -135,22 +135,15 @@ void add_wires(Sheet& sheet, const Plan& plan, const MachineEvents& e, std::span
 }
 
 // Bits of a node's memories but for its tables, which have `tables`; words of narrow memories fill one.
-double memories_of(const Plan& plan, double tables) {
+double stored_bits(const Plan& plan, double tables) {
   const Arch& arch = plan.arch;
   if (plan.program == nullptr && arch.narrow_memories) {
     const double link = plan.words.link_bits;
     return (std::floor(memory_bits(plan) / link) + 1) * link;
   }
   double bits = 0;
-  const auto add = [&bits](const auto& memories) {
-    for (const auto& m : memories) bits += static_cast<double>(m.words) * m.bits * m.copies;
-  };
-  if (plan.program != nullptr) {
-    add(memory_traffic(plan, {}));
-    return bits - tables;
-  }
-  add(NodeMemories(plan.rule, arch, plan.particles).of(arch.brick, arch.filter_lanes, arch.force_pipes));
-  return bits;
+  for (const NodeMemory& m : memories_of(plan)) bits += static_cast<double>(m.words) * m.bits * m.copies;
+  return plan.program != nullptr ? bits - tables : bits;
 }
 
 struct NodeBits {
@@ -182,7 +175,7 @@ NodeBits node_bits(const Plan& plan) {
   NodeBits node;
   const DatapathWork work = datapath_work(plan);
   node.tables = plan.arch.force_pipes * work.pair.table_bits() + work.update.table_bits();
-  node.memories = memories_of(plan, node.tables);
+  node.memories = stored_bits(plan, node.tables);
   node.transistors = transistors_of(plan);
   node.registers = register_bits(plan);
   return node;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "hw/cost/rule_work.h"
 #include "hw/rtl/rtl_design.h"
 #include "model/base/fixed_math.h"
 #include "model/base/integer_math.h"
@@ -96,6 +97,12 @@ std::vector<NodeMemory> NodeMemories::of(const Cell& brick, int lanes, int pipes
     counts(face, 2, 2);
   }
   return memories;
+}
+
+std::vector<NodeMemory> memories_of(const Plan& plan) {
+  if (plan.program != nullptr) return rule_memories(plan);
+  const Arch& arch = plan.arch;
+  return NodeMemories(plan.rule, arch, plan.particles).of(arch.brick, arch.filter_lanes, arch.force_pipes);
 }
 
 }  // namespace cuboct

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The memories of a node in RTL that grow with its brick, its lanes or its pipes: words, widths, how many of
-// each. What does not is left to measurement: tables, registers, delays.
+// The memories of a node in RTL: words, widths, how many of each. Registers and delays are left to
+// measurement.
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "hw/plan/plan.h"
@@ -11,7 +12,7 @@
 namespace cuboct {
 
 struct NodeMemory {
-  const char* holds;   // "own particles"
+  std::string holds;   // "own particles"
   uint64_t words = 0;  // >= 1
   int bits = 0;        // of a word
   int copies = 1;
@@ -25,7 +26,8 @@ struct NodeMemory {
   bool operator==(const NodeMemory&) const = default;
 };
 
-// The memories of one scene's machines, whatever brick, lanes and pipes they have.
+// The memories of one scene's machines, whatever brick, lanes and pipes they have: of the pair law, without
+// its tables, which are of the pipes.
 class NodeMemories {
  public:
   // `arch` gives capacity, queue and link; wide memories only.
@@ -38,5 +40,8 @@ class NodeMemories {
   uint32_t particles_;
   int sum_bits_;  // of a pipe's exact sum of one axis
 };
+
+// Of the plan's own machine; of a rule of text with its tables.
+std::vector<NodeMemory> memories_of(const Plan& plan);
 
 }  // namespace cuboct

@@ -167,8 +167,11 @@ uint64_t FitLoads::least_cycles(const Cell& brick, int lanes, int pipes) {
   const uint64_t streamed = of.streamed[std::min(as_size(lanes), of.streamed.size()) - 1];
   const uint64_t issues = (of.pairs + as_size(pipes) - 1) / as_size(pipes) * as_size(latency.interval);
   // The ends of force, update and of each migrate phase: filter, pipe, the last slot's way, an end beat.
-  return std::max(streamed + as_size(latency.filter), issues) + 2 + as_size(latency.pipe) +
-         as_size(latency.update) + as_size(plan_.rule.axes) * (3 + as_size(plan_.link.latency));
+  uint64_t cycles = as_size(plan_.rule.axes) * (3 + as_size(plan_.link.latency));
+  for (const PlanRound& round : plan_.rounds)
+    cycles += std::max(streamed + as_size(latency.filter), issues) + 2 + as_size(round.pipe) +
+              as_size(round.finish);
+  return cycles;
 }
 
 }  // namespace cuboct

@@ -94,6 +94,7 @@ class FitLoads {
  public:
   // Refers to all; `plan`: of any brick, lanes and pipes, without narrow memories.
   FitLoads(const Plan& plan, const PairCensus& census);
+  // Summed over the rounds.
   uint64_t least_cycles(const Cell& brick, int lanes, int pipes);
 
  private:

@@ -157,7 +157,15 @@ double bond_register_bits(const Plan& plan) {
   return static_cast<double>(plan.arch.capacity) * plan.words.bonds * (1 + numbers);
 }
 
-std::vector<MemoryTraffic> rule_traffic(const Plan& plan, const MachineEvents& e) {
+namespace {
+
+struct Memory {
+  NodeMemory node;
+  uint64_t reads = 0, writes = 0;
+};
+
+std::vector<Memory> memories_of(const Plan& plan, const MachineEvents& e) {
+  using Kind = NodeMemory::Kind;
   const Rounds rounds(plan);
   const Arch& arch = plan.arch;
   const auto capacity = static_cast<uint64_t>(arch.capacity), pipes = static_cast<uint64_t>(arch.force_pipes),
@@ -166,27 +174,32 @@ std::vector<MemoryTraffic> rule_traffic(const Plan& plan, const MachineEvents& e
   const uint64_t written = e.updates + e.scanned - e.left + e.moved;
   const uint64_t own_met = e.candidates - e.candidates_x - e.candidates_y - e.candidates_z;
   const uint64_t pairs = e.pairs / count, updates = e.updates / count;  // of each round
-  std::vector<MemoryTraffic> all;
-  const auto put = [&](std::string holds, uint64_t words, int bits, int copies, uint64_t reads,
+  std::vector<Memory> all;
+  const auto put = [&](Kind kind, std::string holds, uint64_t words, int bits, int copies, uint64_t reads,
                        uint64_t writes) {
-    all.push_back({std::move(holds), words, bits, copies, reads, writes, true});
+    all.push_back({{std::move(holds), words, bits, copies, kind}, reads, writes});
   };
-  put("own particles", capacity, rounds.own_bits(), 1, e.relayed_own + e.updates + e.scanned, written);
-  put("own particles, for the streamer", capacity, seen, 1, own_met, written);
-  put("own particles, for the pipes", capacity, seen, arch.force_pipes, e.pairs, written * pipes);
-  put("ids, for the pipes' faults", capacity, plan.words.id_bits, arch.force_pipes, e.pairs, written * pipes);
+  // cuboct_ram asks for a block above 16 words.
+  const auto ram = [&](std::string holds, uint64_t words, int bits, int copies, uint64_t reads,
+                       uint64_t writes) {
+    put(words > 16 ? Kind::block : Kind::late, std::move(holds), words, bits, copies, reads, writes);
+  };
+  ram("own particles", capacity, rounds.own_bits(), 1, e.relayed_own + e.updates + e.scanned, written);
+  ram("own particles, for the streamer", capacity, seen, 1, own_met, written);
+  ram("own particles, for the pipes", capacity, seen, arch.force_pipes, e.pairs, written * pipes);
+  ram("ids, for the pipes' faults", capacity, plan.words.id_bits, arch.force_pipes, e.pairs, written * pipes);
   const int rows = ceil_div(arch.capacity, arch.filter_lanes);
-  put("queue", static_cast<uint64_t>(arch.queue_depth),
+  put(Kind::prompt, "queue", static_cast<uint64_t>(arch.queue_depth),
       rounds.candidate_bits() + std::max(1, ceil_log2(static_cast<uint64_t>(rows))) + arch.filter_lanes +
           arch.force_pipes * (1 + rounds.slot_bits()),
       1, e.entries, e.entries);
   for (size_t k = 0; k < plan.rounds.size(); ++k) {
     for (int s = 0; s < rounds.sums(k); ++s)
-      put(fmt::format("sum {} of round {}", s + 1, k + 1), capacity, rounds.bits_of_sum(k, s),
+      put(Kind::prompt, fmt::format("sum {} of round {}", s + 1, k + 1), capacity, rounds.bits_of_sum(k, s),
           arch.force_pipes, pairs + updates * pipes, pairs);
     const int waits = rounds.finishes[k].resources.cycles + 1;
     if (waits >= 2)
-      put(fmt::format("particles in the finish of round {}", k + 1),
+      put(Kind::late, fmt::format("particles in the finish of round {}", k + 1),
           std::bit_ceil(static_cast<uint64_t>(waits)), rounds.own_bits(), 1, updates, updates);
   }
   MachineEvents along = e;
@@ -198,22 +211,38 @@ std::vector<MemoryTraffic> rule_traffic(const Plan& plan, const MachineEvents& e
       if (plan.rounds[k].beats == 0) continue;
       const int bits = k == 0 ? plan.words.halo_bits : bits_of(plan.rounds[k].record);
       const std::string of = k == 0 ? "halos" : fmt::format("numbers of round {}", k + 1);
-      put(of + " from a face", depth, bits, 2, met * (count - k) / count, came);
-      if (later > 0) put(of + ", for the relay", depth, bits, 2, came * later, came);
+      ram(of + " from a face", depth, bits, 2, met * (count - k) / count, came);
+      if (later > 0) ram(of + ", for the relay", depth, bits, 2, came * later, came);
     }
     // Which axis a particle came along no event tells: it is told of the last one.
     const uint64_t moved = a + 1 == axes ? e.moved : 0;
-    put("particles from a face", capacity, plan.words.particle_bits, 2, moved, moved);
+    ram("particles from a face", capacity, plan.words.particle_bits, 2, moved, moved);
   }
   for (size_t k = 0; k < plan.rounds.size(); ++k) {
     for (const pipeline::Rom& rom : rounds.pairs[k].resources.roms)
-      put(fmt::format("table of round {}", k + 1), static_cast<uint64_t>(rom.words), rom.bits,
+      put(Kind::block, fmt::format("table of round {}", k + 1), static_cast<uint64_t>(rom.words), rom.bits,
           arch.force_pipes, pairs, 0);
     for (const pipeline::Rom& rom : rounds.finishes[k].resources.roms)
-      put(fmt::format("table of the finish of round {}", k + 1), static_cast<uint64_t>(rom.words), rom.bits,
-          1, updates, 0);
+      put(Kind::block, fmt::format("table of the finish of round {}", k + 1),
+          static_cast<uint64_t>(rom.words), rom.bits, 1, updates, 0);
   }
   return all;
+}
+
+}  // namespace
+
+std::vector<NodeMemory> rule_memories(const Plan& plan) {
+  std::vector<NodeMemory> memories;
+  for (Memory& m : memories_of(plan, {})) memories.push_back(std::move(m.node));
+  return memories;
+}
+
+std::vector<MemoryTraffic> rule_traffic(const Plan& plan, const MachineEvents& events) {
+  std::vector<MemoryTraffic> traffic;
+  for (Memory& m : memories_of(plan, events))
+    traffic.push_back(
+        {std::move(m.node.holds), m.node.words, m.node.bits, m.node.copies, m.reads, m.writes, true});
+  return traffic;
 }
 
 }  // namespace cuboct

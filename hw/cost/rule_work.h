@@ -7,6 +7,7 @@
 
 #include "hw/cost/events.h"
 #include "hw/cost/memory_traffic.h"
+#include "hw/cost/node_memories.h"
 #include "hw/cost/pair_work.h"
 #include "hw/plan/plan.h"
 
@@ -19,6 +20,9 @@ DatapathWork rule_work(const Plan& plan);
 // Bits of registers of a node that hold what its pairs leave of their bonds until the finish: which were met,
 // and their numbers.
 double bond_register_bits(const Plan& plan);
+
+// The memories of the plan's node with its lanes and pipes, the tables among them.
+std::vector<NodeMemory> rule_memories(const Plan& plan);
 
 // As memory_traffic (memory_traffic.h), with the tables. What a pair reads and adds to a sum is counted of
 // each issued pair, which is an upper end. A later round's numbers of a halo count as used in its round and

@@ -7,7 +7,6 @@
 #include "hw/engine/engines.h"
 #include "hw/plan/probe_accuracy.h"
 #include "hw/plan/real_plan.h"
-#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/reference_engine.h"
@@ -60,6 +59,15 @@ Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engi
     for (Probe& probe : calm.probes) probe.accuracy = 0;
     return plan_of(calm, arch, form);
   }
+}
+
+Setup machine_setup(const Scene& scene, const Arch& arch) {
+  refuse_deform(scene, "a machine");
+  if (scene.rule.rounds == nullptr) return make_setup(scene, arch);
+  Plan plan = program_plan_of(scene, arch, CellForm::cubes);
+  State initial;
+  with_places(scene, arch, [&] { initial = begin_of(scene, plan, nullptr); });
+  return {std::move(plan), std::move(initial)};
 }
 
 const std::string& strictest(const std::vector<std::string>& engines) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hw/plan/plan.h"
+#include "hw/plan/setup.h"
 #include "model/real/reference.h"
 #include "model/run/engine.h"
 #include "model/run/record.h"
@@ -24,6 +25,9 @@ void check_runs(const Scene& scene, const Arch& arch, const std::string& engine)
 // that no integers hold, where `engine` always computes in doubles. None is named: engine_for(scene). `real`:
 // the engine is to compute in real numbers, so that a rule of text needs no integers.
 Plan scene_plan_of(const Scene& scene, const Arch& arch, const std::string& engine = "", bool real = false);
+// The plan and the initial state of a machine, of the pair law or of a rule of text. Throws InputError where
+// the scene has none.
+Setup machine_setup(const Scene& scene, const Arch& arch);
 // Of several engines that share a plan, the one that takes the fewest shapes of cells.
 const std::string& strictest(const std::vector<std::string>& engines);
 // The same for several engines that hold the same bits: each must run the scene.

@@ -45,11 +45,8 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
   const FixedRule& rule = plan.rule;
   const Widths& w = rule.widths;
   const IntegerProgram* program = plan.program.get();
-  Json per_step = Json::object();
-  if (program == nullptr) {  // of rounds only what is counted is known
-    const ExpectedCycles cycles = expected_cycles(plan, initial);
-    per_step = {{"expected", cycles.step}, {"at_full_use", cycles.ideal}};
-  }
+  const ExpectedCycles cycles = expected_cycles(plan, initial);
+  Json per_step = {{"expected", cycles.step}, {"at_full_use", cycles.ideal}};
   if (counted)
     per_step["counted"] = {{"mean", counted->mean()}, {"most", counted->most}, {"steps", counted->steps}};
   Json bits = {{"position_frac", w.position_frac}};

@@ -150,7 +150,8 @@ uint64_t free_disk(const std::string& path) {
   fs::path at = fs::absolute(path, none);
   while (!fs::exists(at, none) && at.has_relative_path()) at = at.parent_path();
   const fs::space_info space = fs::space(at, none);
-  return none ? kUnlimited : space.available;
+  // One of the kernel's own, as /proc, has no blocks: why nothing can be written there, the write says.
+  return none || space.capacity == 0 ? kUnlimited : space.available;
 }
 
 }  // namespace cuboct

@@ -479,8 +479,11 @@ class Reader {
           fmt::format("cannot read {}: {}", path, special ? "it is no file" : std::strerror(errno)));
     std::fclose(file);
     H5PLset_loading_state(0);  // a file may ask for a filter, and a filter is code
-    return Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose,
-                  fmt::format("{} is not an HDF5 file", path));
+    const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    if (id < 0 && H5Fis_hdf5(path.c_str()) > 0)
+      throw InputError(fmt::format("{} is damaged: it begins as an HDF5 file, and HDF5 cannot open it", path),
+                       "it was cut short or written over; the command that made it makes it again");
+    return Handle(id, H5Fclose, fmt::format("{} is not an HDF5 file", path));
   }
   Handle opened(hid_t where, const std::string& name) const {
     check_link(where, name, "dataset");

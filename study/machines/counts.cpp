@@ -8,6 +8,7 @@
 #include "emu/lattice/engine.h"
 #include "emu/timing/kicks.h"
 #include "emu/timing/timing.h"
+#include "hw/engine/scene_engine.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
@@ -102,9 +103,10 @@ struct Counted {
     const auto busy = [](const std::array<double, kStepParts>& p) {
       return p[static_cast<size_t>(StepPart::force)] + p[static_cast<size_t>(StepPart::update)];
     };
+    const size_t phases = spans.size() / nodes.size();
     for (size_t n = 0; n < nodes.size(); ++n) {
       uint64_t end = 0;
-      for (size_t p = 0; p < kPhases; ++p) end = std::max(end, spans[n * kPhases + p].end + 1);
+      for (size_t p = 0; p < phases; ++p) end = std::max(end, spans[n * phases + p].end + 1);
       const auto parts = parts_of(nodes[n], end, counts.cycles - end, steps);
       if (n == 0 || busy(parts) > busy(most)) most = parts;
     }
@@ -144,7 +146,7 @@ Setup setup_of(const Scene& scene, const Base& base, const Settings& settings) {
   const std::string path = base.arch_path.empty() ? "(default arch)" : base.arch_path;
   const std::string text = base.arch_text.empty() ? "name = \"default\"\n" : base.arch_text;
   const Arch arch = without_machine(parse_arch(with_changes(text, path, settings.arch), path));
-  return with_places(scene, arch, [&] { return make_setup(scene, arch); });
+  return with_places(scene, arch, [&] { return machine_setup(scene, arch); });
 }
 
 }  // namespace
@@ -152,10 +154,12 @@ Setup setup_of(const Scene& scene, const Base& base, const Settings& settings) {
 SharedSetup::SharedSetup(const Base& base, const Settings& settings)
     : scene_(parse_scene(with_changes(base.scene_text, base.scene_path, settings.scene), base.scene_path)),
       setup_(setup_of(scene_, base, settings)),
-      census_(setup_.plan.rule, setup_.plan.lattice, setup_.initial) {}
+      census_(setup_.plan, setup_.initial) {}
 
 Plan SharedSetup::plan_of(const Arch& arch) const {
-  return on_machine(setup_.plan, with_machine(setup_.plan.arch, arch));
+  Plan plan = on_machine(setup_.plan, with_machine(setup_.plan.arch, arch));
+  if (const std::string why = machine_refusal(plan); !why.empty()) throw InputError("no machine: " + why);
+  return plan;
 }
 
 ExpectedCycles SharedSetup::expected(const Plan& plan) const {
@@ -171,18 +175,19 @@ std::vector<std::optional<MachineCounts>> count_machines(const SharedSetup& shar
   try {
     emu::LatticeOptions options;
     options.threads = 1;
-    emu::LatticeEngine engine(
-        shared.plan(), initial.step, shared.plan().particles,
-        [&](uint32_t k) { return initial.particles[k]; }, options);
-    emu::KickCounter counter(shared.plan(), 1);
+    emu::LatticeEngine engine(shared.plan(), initial.step, shared.plan().particles,
+                              [&](uint32_t k) { return initial.particles[k]; }, options,
+                              {initial.fields, initial.bonds});  // of an initial state in the order of ids
+    std::optional<emu::KickCounter> counter;  // of the pair law, which says which pairs are near
+    if (shared.plan().program == nullptr) counter.emplace(shared.plan(), 1);
     emu::CellSlots slots;
     std::vector<Particle> particles;
     for (uint64_t k = 0; k < steps && !interrupted(); ++k) {
       engine.slots(slots);
       particles.clear();
-      engine.for_each_slot([&](const Particle& p) { particles.push_back(p); });
+      if (counter) engine.for_each_slot([&](const Particle& p) { particles.push_back(p); });
       engine.step();
-      counter.add(particles, kicks);
+      if (counter) counter->add(particles, kicks);
       for (const auto& machine : counted) machine->step(slots, engine.leaving());
     }
   } catch (const RunError&) {

@@ -48,7 +48,7 @@ class SharedSetup {
  public:
   // Of `settings` with these keys at their defaults. Throws InputError where that makes no plan.
   SharedSetup(const Base& base, const Settings& settings);
-  // The plan of an arch of the same scene: make_setup's own, to the hash. Throws InputError.
+  // The plan of an arch of the same scene: machine_setup's own, to the hash. Throws InputError.
   Plan plan_of(const Arch& arch) const;
   ExpectedCycles expected(const Plan& plan) const;
   const State& initial() const { return setup_.initial; }

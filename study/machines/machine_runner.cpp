@@ -71,8 +71,9 @@ void add_energy(MachineFinding& f, const Plan& plan, const Technology& technolog
   f.lacking = lacking_of(technology);
   if (energy.rows.empty()) return;
   const bool open = !f.lacking.empty();
-  at(f, MachineQuantity::energy) = {1e-12 / static_cast<double>(c.events.updates) * energy.sum,
-                                    Known::estimated, open};
+  const uint64_t updates = c.events.updates / plan.rounds.size();  // a particle has one in each round
+  at(f, MachineQuantity::energy) = {1e-12 / static_cast<double>(updates) * energy.sum, Known::estimated,
+                                    open};
   at(f, MachineQuantity::power) = {1e-12 * f.choice.clock / static_cast<double>(c.cycles) * energy.sum,
                                    Known::estimated, open};
   if (has_area(technology))

@@ -5,6 +5,8 @@
 #include "emu/machine/loop_bench.h"
 #include "emu/systemc/node.h"
 #include "hw/cost/cycles.h"
+#include "tests/backend/bond_cases.h"
+#include "tests/backend/rule_cases.h"
 #include "tests/support/block.h"
 
 namespace cuboct::test {
@@ -77,6 +79,19 @@ TEST(ExpectedCycles, OfBricksAreWithinTwelvePerCentOfTheMachine) {
       arch.filter_lanes = overlap ? 8 : 3;
       EXPECT_LE(machine_over_ideal(block({.size = {5, 5, 5}, .jitter = 0.01, .speed = 0.001}, arch), 8), 1.5);
     }
+}
+
+// Rounds after one another: neighbours begin a round when they have ended the one before. One step, as the
+// hot packing crowds some cells soon.
+TEST(ExpectedCycles, OfRulesOfTextAreWithinTwelvePerCentOfTheMachine) {
+  for (const bool overlap : {true, false}) {
+    Arch arch;
+    arch.overlap = overlap;
+    arch.filter_lanes = overlap ? 8 : 3;
+    for (const std::string& rule : {kOneRound, kTwoRounds, kFourRounds})
+      machine_over_ideal(case_of("rounds", hot(rule), arch, 1).setup, 1);
+    machine_over_ideal(BondedCase(kSprings, {}, arch).c.setup, 8);
+  }
 }
 
 }  // namespace

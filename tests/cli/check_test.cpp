@@ -6,6 +6,7 @@
 #include <regex>
 #include <sstream>
 
+#include "model/base/output.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -124,6 +125,30 @@ TEST(Check, TellsPhysics) {
   // A box that repeats, of plain numbers.
   const std::string gas = Bench(false).cuboct({"check", "scenes/lj_block.toml"}).out;
   EXPECT_NE(gas.find("repeats along xyz, 256 particles of mass 1, 1.11 apart\n"), std::string::npos) << gas;
+}
+
+// A rule of text takes the time of its operations: a pair's noise, a hash of many steps, more than all else
+// of it.
+TEST(Check, CountsTheOperationsOfARuleOfText) {
+  const Bench bench(false);
+  const auto seconds = [&](const std::string& more) {
+    write_text(
+        bench.path("rule.toml"),
+        "density = \"7.8 g/cm^3\"\npacking = { pitch = \"1 mm\" }\nrun = { dt = \"0.2 us\", steps = 1000 }\n"
+        "[box]\nperiodic = \"xyz\"\ncells = [12, 12, 12]\n[rule]\nreach = \"1.3 * pitch\"\n"
+        "[[rule.round]]\nsum.force = \"1 kN/m * (r - pitch)" +
+            more + " * d / r\"\n");
+    const std::string out = bench.cuboct({"check", bench.path("rule.toml")}).out;
+    std::smatch work;
+    if (!std::regex_search(out, work, std::regex("particle-steps, about ([0-9.]+) s on"))) {
+      ADD_FAILURE() << out;
+      return 0.0;
+    }
+    return std::stod(work[1]);
+  };
+  const double plain = seconds(""), noisy = seconds(" * (1 + noise(7))");
+  EXPECT_GT(noisy, 5 * plain);
+  EXPECT_LT(noisy, 40 * plain);
 }
 
 // With numbers for scripts, and the formats' reasons where a probe asks for its accuracy.

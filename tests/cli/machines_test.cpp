@@ -25,10 +25,32 @@ force_pipes = [1, 2]
 brick = [[1, 1, 1], [9, 9, 9]]
 )";
 
+constexpr const char* kBlock = CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml";
+
+// A rule of two rounds.
+constexpr const char* kRounds = R"toml(density = "7.8 g/cm^3"
+packing = { pitch = "1 mm" }
+run = { dt = "0.2 us", steps = 9 }
+[box]
+periodic = "xyz"
+cells = [4, 3, 3]
+[[velocity]]
+thermal_speed = "300 m/s"
+seed = 3
+[rule]
+reach = "1.3 * pitch"
+[rule.particle.crowd]
+range = [-40, 40]
+[[rule.round]]
+sum.n = "1 - r / (1.3 * pitch)"
+finish.crowd = "max(min(n, 30), -30)"
+[[rule.round]]
+sum.force = "(1 kN/m + 0.1 kN/m * (crowd_i + crowd_j)) * (r - pitch) * d / r"
+)toml";
+
 struct Machines {
-  explicit Machines(const std::string& text) : bench(false) {
-    write_text(bench.path("study.toml"),
-               "scene = \"" CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml\"\n" + text);
+  explicit Machines(const std::string& text, const std::string& scene = kBlock) : bench(false) {
+    write_text(bench.path("study.toml"), "scene = \"" + scene + "\"\n" + text);
   }
   Answer explore(const std::vector<std::string>& more = {}, const std::string& jobs = "2") const {
     std::vector<std::string> words{
@@ -72,9 +94,8 @@ struct Machines {
   Bench bench;
 };
 
-// Each machine of a study has the numbers that `cuboct energy` has of its arch.
-TEST(ExploreMachines, NumbersAreThoseOfCuboctEnergy) {
-  const Machines m(kGrid);
+// Each machine of the grid has the numbers that `cuboct energy` has of its arch.
+void expect_numbers_of_energy(const Machines& m, const std::string& scene) {
   const Answer answer = m.explore();
   ASSERT_EQ(answer.code, 0) << answer.err;
   const auto rows = m.table();
@@ -86,9 +107,9 @@ TEST(ExploreMachines, NumbersAreThoseOfCuboctEnergy) {
     write_text(m.bench.path("arch.toml"),
                "name = \"a\"\n[node]\nfilter_lanes = " + row.at("arch.node.filter_lanes") +
                    "\nforce_pipes = " + row.at("arch.node.force_pipes") + "\n");
-    const Answer energy = m.bench.cuboct({"energy", "scenes/undamped_block.toml", "--arch",
-                                          m.bench.path("arch.toml"), "--technology", row.at("technology"),
-                                          "--clock", "50 MHz", "--steps", "10", "--json"});
+    const Answer energy =
+        m.bench.cuboct({"energy", scene, "--arch", m.bench.path("arch.toml"), "--technology",
+                        row.at("technology"), "--clock", "50 MHz", "--steps", "10", "--json"});
     ASSERT_EQ(energy.code, 0) << energy.err;
     const Json machine = Json::parse(energy.out)["machines"][0], tech = machine["technologies"][0];
     const auto near = [&](const std::string& column, double expected) {
@@ -109,6 +130,14 @@ TEST(ExploreMachines, NumbersAreThoseOfCuboctEnergy) {
   EXPECT_NE(answer.out.find("16 machines, 8 refused; cycles are means of 10 steps\n  no machine, 8x: "),
             std::string::npos)
       << answer.out;
+}
+
+TEST(ExploreMachines, NumbersAreThoseOfCuboctEnergy) { expect_numbers_of_energy(Machines(kGrid), kBlock); }
+
+TEST(ExploreMachines, NumbersOfARuleOfTextAreThoseOfCuboctEnergy) {
+  const Bench scene(false);
+  write_text(scene.path("rounds.toml"), kRounds);
+  expect_numbers_of_energy(Machines(kGrid, scene.path("rounds.toml")), scene.path("rounds.toml"));
 }
 
 // Nothing in a build without the page.

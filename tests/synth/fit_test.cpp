@@ -10,7 +10,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "hw/cost/memory_traffic.h"
+#include "hw/cost/node_memories.h"
 #include "hw/plan/setup.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/process.h"
@@ -56,14 +56,8 @@ Shapes elaborated(const Plan& plan) {
 
 Shapes counted(const Plan& plan) {
   Shapes shapes;
-  if (plan.program != nullptr) {
-    for (const MemoryTraffic& m : memory_traffic(plan, {}))
-      if (!m.holds.starts_with("table")) shapes[{m.words, m.bits}] += m.copies;
-    return shapes;
-  }
-  const NodeMemories memories(plan.rule, plan.arch, plan.particles);
-  for (const NodeMemory& m : memories.of(plan.arch.brick, plan.arch.filter_lanes, plan.arch.force_pipes))
-    shapes[{m.words, m.bits}] += m.copies;
+  for (const NodeMemory& m : memories_of(plan))
+    if (!m.holds.starts_with("table")) shapes[{m.words, m.bits}] += m.copies;
   return shapes;
 }
 

@@ -12,6 +12,8 @@
 
 #include "hw/cost/room_search.h"
 #include "hw/plan/setup.h"
+#include "tests/backend/bond_cases.h"
+#include "tests/backend/rule_cases.h"
 #include "tests/support/dice.h"
 
 namespace cuboct {
@@ -183,7 +185,7 @@ TEST(Fit, CountsBricksAsTheyAreCut) {
 TEST(Fit, TheCensusCountsAllPairs) {
   const cuboct::Setup setup = make_setup(read_scene(CUBOCT_SOURCE_DIR "/scenes/undamped_block.toml"), Arch());
   const Plan& plan = setup.plan;
-  const PairCensus census(plan.rule, plan.lattice, setup.initial);
+  const PairCensus census(plan, setup.initial);
   std::map<std::pair<uint32_t, std::array<int8_t, 3>>, uint64_t> pairs;
   uint64_t all = 0, counted = 0, particles = 0;
   for (const Particle& i : setup.initial.particles)
@@ -210,9 +212,34 @@ TEST(Fit, TheCensusCountsAllPairs) {
   EXPECT_GT(all, 2000u);
 }
 
-TEST(Fit, TheBoundIsBelowTheCycles) {
-  int compared = 0;
+// A bound and the cycles of lanes and pipes, of the machine of one cell a node that `base` is.
+struct Bounded {
   double tightest = 0;
+  int compared = 0;
+
+  void look(const cuboct::Setup& base, FitLoads& loads, const PairCensus& census, const Cell& brick,
+            int lanes, int pipes) {
+    Arch changed = base.plan.arch;
+    changed.brick = brick;
+    changed.filter_lanes = lanes;
+    changed.force_pipes = pipes;
+    const Plan plan = on_machine(base.plan, changed);
+    const ExpectedCycles counted = expected_cycles(plan, base.initial);
+    const ExpectedCycles same = expected_cycles(plan, census);
+    EXPECT_EQ(same.step, counted.step);
+    EXPECT_EQ(same.ideal, counted.ideal);
+    const uint64_t least = loads.least_cycles(brick, lanes, pipes);
+    EXPECT_LE(least, counted.step);
+    EXPECT_GT(least, counted.ideal);
+    tightest = std::max(tightest, static_cast<double>(least) / static_cast<double>(counted.step));
+    ++compared;
+  }
+};
+
+constexpr std::array kLanesAndPipes = {std::pair{1, 1}, std::pair{3, 1}, std::pair{8, 2}, std::pair{16, 8}};
+
+TEST(Fit, TheBoundIsBelowTheCycles) {
+  Bounded bounded;
   for (const char* name : {"undamped_block", "lj_block", "two_types"}) {
     const Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/" + std::string(name) + ".toml");
     for (const bool overlap : {true, false}) {
@@ -220,31 +247,45 @@ TEST(Fit, TheBoundIsBelowTheCycles) {
       arch.overlap = overlap;
       arch.filter_lanes = 1;
       const cuboct::Setup base = make_setup(scene, arch);
-      const PairCensus census(base.plan.rule, base.plan.lattice, base.initial);
+      const PairCensus census(base.plan, base.initial);
       FitLoads loads(base.plan, census);
       for (const Cell& brick : {Cell{1, 1, 1}, Cell{2, 1, 1}, Cell{2, 2, 2}, Cell{3, 3, 3}})
-        for (const auto& [lanes, pipes] :
-             {std::pair{1, 1}, std::pair{3, 1}, std::pair{8, 2}, std::pair{16, 8}}) {
-          Arch changed = base.plan.arch;
-          changed.brick = brick;
-          changed.filter_lanes = lanes;
-          changed.force_pipes = pipes;
-          const Plan plan =
-              make_plan(base.plan.rule, changed, base.plan.lattice, base.plan.origin, base.plan.particles);
-          const ExpectedCycles counted = expected_cycles(plan, base.initial);
-          const ExpectedCycles same = expected_cycles(plan, census);
-          EXPECT_EQ(same.step, counted.step);
-          EXPECT_EQ(same.ideal, counted.ideal);
-          const uint64_t least = loads.least_cycles(brick, lanes, pipes);
-          EXPECT_LE(least, counted.step);
-          EXPECT_GT(least, counted.ideal);
-          tightest = std::max(tightest, static_cast<double>(least) / static_cast<double>(counted.step));
-          ++compared;
-        }
+        for (const auto& [lanes, pipes] : kLanesAndPipes)
+          bounded.look(base, loads, census, brick, lanes, pipes);
     }
   }
-  EXPECT_EQ(compared, 96);
-  EXPECT_GT(tightest, 0.95);
+  EXPECT_EQ(bounded.compared, 96);
+  EXPECT_GT(bounded.tightest, 0.95);
+}
+
+// Of a round, of four, of bonds.
+TEST(Fit, TheBoundIsBelowTheCyclesOfRulesOfText) {
+  Bounded bounded;
+  for (const bool overlap : {true, false}) {
+    Arch arch;
+    arch.overlap = overlap;
+    arch.filter_lanes = 1;
+    for (const cuboct::Setup& base : {test::case_of("one", test::hot(test::kOneRound), arch, 1).setup,
+                                      test::case_of("four", test::hot(test::kFourRounds), arch, 1).setup,
+                                      test::BondedCase(test::kSprings, {}, arch).c.setup}) {
+      const PairCensus census(base.plan, base.initial);
+      FitLoads loads(base.plan, census);
+      for (const auto& [lanes, pipes] : kLanesAndPipes)
+        bounded.look(base, loads, census, {1, 1, 1}, lanes, pipes);
+    }
+  }
+  EXPECT_EQ(bounded.compared, 24);
+  EXPECT_GT(bounded.tightest, 0.8);
+}
+
+// Pairs of a bonded rule are its bonds, each from both ends.
+TEST(Fit, TheCensusOfABondedRuleCountsBonds) {
+  const cuboct::Setup setup = test::BondedCase(test::kSprings, {}, {}).c.setup;
+  const PairCensus census(setup.plan, setup.initial);
+  uint64_t pairs = 0;
+  for (uint32_t n = 0; n < setup.plan.lattice.size(); ++n) pairs += census.pairs(n);
+  EXPECT_EQ(pairs, setup.plan.program->rows->other.size());
+  EXPECT_GT(pairs, 100U);
 }
 
 }  // namespace

@@ -363,6 +363,12 @@ TEST_F(TraceFile, SaysWhatIsWrongWithAFileThatIsNoTrace) {
             "cannot read " + path("none.h5") + ": No such file or directory");
   std::ofstream(path("text.h5")) << "not HDF5";
   EXPECT_EQ(refused_with([&] { read_trace(path("text.h5")); }), path("text.h5") + " is not an HDF5 file");
+  write_trace(path("cut.h5"), made_trace());
+  fs::resize_file(path("cut.h5"), fs::file_size(path("cut.h5")) / 2);
+  EXPECT_EQ(refused_with([&] { read_trace(path("cut.h5")); }),
+            path("cut.h5") +
+                " is damaged: it begins as an HDF5 file, and HDF5 cannot open it\n  hint: it was cut "
+                "short or written over; the command that made it makes it again");
 }
 
 TEST_F(TraceFile, RefusesACurveNameThatHdf5WouldSplit) {
