@@ -24,7 +24,9 @@ const char* to_string(Arithmetic arithmetic);  // "fixed", "float", "double"
 inline constexpr int kMostSlabs = 16;
 // Particles that one device takes through a batch of steps in one launch. More are done sooner by a launch
 // for each step (docs/measured/gpu.md).
-inline constexpr uint32_t kMostTogether = 10'000;
+inline constexpr uint32_t kMostTogether = 34'000;
+// Fewer have more threads each: a device is to be filled, and not to take its particles in turns.
+inline constexpr uint32_t kMostOfEightLanes = 8'000, kMostOfFourLanes = 20'000;
 
 struct Options {
   // CUDA's ordinals, one per slab of the scene, at most kMostSlabs. One that comes twice holds two slabs:

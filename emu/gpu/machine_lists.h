@@ -238,7 +238,7 @@ void Machine<Policy>::sort() {
     for_each(s.stream, 0, s.own, options_.block,
              CountByCell{grid(s), s.cell.data(), s.rank_of.data(), s.count.data()});
   }
-  wait_for_all();
+  if (!alone()) wait_for_all();
   for (auto& slab : slabs_) {  // the counts of the copies
     Slab& s = *slab;
     const SlabCells& mine = cells_of(s);
@@ -273,10 +273,12 @@ void Machine<Policy>::sort() {
     }
     for_each(s.stream, 0, before, options_.block,
              Order{s.rank_of.data(), s.first.data(), s.taken.data(), s.order.data()});
-    for_each(s.stream, 0, cells_of(s).own_end, options_.block,
-             OrderInCell{s.first.data(), s.count.data(), s.id.data(), s.order.data()});
+    // By id in what gets the new ids after: each is read before it is written over.
+    for_each(s.stream, 0, s.own, options_.block,
+             OrderInCell{s.first.data(), s.count.data(), s.id.data(), s.rank_of.data(), s.order.data(),
+                         s.spare_id.data()});
     Gather<Policy> f{s.rule->view(),    grid(s),
-                     s.order.data(),    at(s, at_),
+                     s.spare_id.data(), at(s, at_),
                      at(s, 1 - at_),    s.cell.data(),
                      s.id.data(),       s.spare_cell.data(),
                      s.spare_id.data(), Policy::kFixed ? s.entered.data() : nullptr};
@@ -284,7 +286,7 @@ void Machine<Policy>::sort() {
     std::swap(s.cell, s.spare_cell), std::swap(s.id, s.spare_id);
   }
   at_ = 1 - at_;
-  wait_for_all();
+  if (!alone()) wait_for_all();
 }
 
 // Calls use(slab beside, place in its arrays, place of its copies here, count) for each border of a slab.
@@ -318,7 +320,7 @@ void Machine<Policy>::mirror() {
            count * sizeof(CellAt));
     });
   }
-  wait_for_all();
+  if (!alone()) wait_for_all();
 }
 
 // What steps do not send, for energies between what devices own.
@@ -348,7 +350,10 @@ void Machine<Policy>::list_pairs(Slab& s) {
   f.radius = reach_of(skin_.now()), f.near = reach_of(near_skin());
   f.x = s.x[at_].data(), f.cell = s.cell.data(), f.first = s.first.data(), f.count = s.count.data();
   f.entries = s.entries.data(), f.counts = s.counts.data(), f.width = s.width, f.stride = s.stride;
-  max_each(s.stream, 0, s.own, options_.block, f, s.notes.data());
+  if (particles_ <= kMostTogether)  // too few to keep a device busy with a thread each
+    max_shared<PairLanes<32>>(s.stream, s.own, options_.block, f, s.notes.data());
+  else
+    max_each(s.stream, 0, s.own, options_.block, f, s.notes.data());
   s.hashes.zero(s.stream);
   sum_each(s.stream, 0, s.own, options_.block, CountEntries{s.counts.data()}, s.hashes.data());
 }

@@ -126,13 +126,21 @@ void Machine<Policy>::plan_near_lists(const Outcome& outcome) {
 // All steps of a batch in one launch. False: they are more than the device holds at once.
 template <class Policy>
 bool Machine<Policy>::run_together(uint32_t steps, bool hash) {
+  // More doubles than have eight lanes are done sooner by a launch for each step.
+  [[maybe_unused]] constexpr bool kDoubles = sizeof(typename Policy::Position) > 16;
   Slab& s = *slabs_.front();
   bool ran = false;
   Policy::with_variant(s.rule->view(), [&](auto variant) {
     const StepsTogether<Policy, decltype(variant)> f{filled<Step<Policy, decltype(variant), false>>(s),
                                                      s.id.data(), hash};
-    ran = go_on_together(s.stream, s.own, options_.block, s.rule->cache(), s.rule->cache_words(), steps,
-                         s.meeting, s.hashes.data(), f);
+    const auto go_on = [&](auto lanes) {
+      return go_on_together<decltype(lanes)>(s.stream, s.own, options_.block, s.rule->cache(),
+                                             s.rule->cache_words(), steps, s.meeting, s.hashes.data(), f);
+    };
+    if (particles_ <= kMostOfEightLanes)
+      ran = go_on(PairLanes<8>());
+    else if constexpr (!kDoubles)
+      ran = particles_ <= kMostOfFourLanes ? go_on(PairLanes<4>()) : go_on(PairLanes<2>());
   });
   if (ran) near_age_ = kNever;  // steps over near lists go on with new ones
   return ran;

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emu/gpu/engine.h"
+
 namespace cuboct::gpu {
 
 Skin::Skin(double radius, double largest, double particles)
-    : making_(kMaking + kMakingOfFew * std::min(1.0, kFew / std::max(particles, 1.0))) {
+    : making_(kMaking + kMakingOfFew * std::min(1.0, kFew / std::max(particles, 1.0))), entry_(kEntry) {
+  if (particles <= kMostTogether) making_ = kMakingTogether, entry_ = kEntryTogether;
   constexpr double kThinnest = 0.02, kStep = 1.25, kFirst = 0.1;
   for (int k = 0; k < kSkins; ++k) {
     const double skin = radius * kThinnest * std::pow(kStep, k);
@@ -23,7 +26,7 @@ void Skin::aged(uint64_t steps) {
   auto& [cost, when, at, lists] = learned_;
   const int now = static_cast<int>(at);
   ++lists;
-  const double making = making_ / static_cast<double>(steps), keeping = kEntry * entries_;
+  const double making = making_ / static_cast<double>(steps), keeping = entry_ * entries_;
   // What was long ago may have been another motion.
   const bool again = cost[now] > 0 && when[now] + 1 == lists;
   cost[now] = again ? (cost[now] + making + keeping) / 2 : making + keeping;

@@ -44,6 +44,8 @@ class Skin {
   // there are few particles that of more, as it is then a matter of waiting for the host; an entry that is
   // met now and then, when near lists are made, takes so much a step.
   static constexpr double kMaking = 400, kMakingOfFew = 1100, kFew = 50e3, kEntry = 0.06;
+  // Of particles that go through steps together, which have no near lists: each step meets each entry.
+  static constexpr double kMakingTogether = 1500, kEntryTogether = 1;
   // The share of the cost that is worth a try, and for how many lists one remembers what it gave.
   static constexpr double kWorthwhile = 0.05, kOthers = 20;
   static constexpr uint64_t kRemembered = 64;
@@ -54,7 +56,7 @@ class Skin {
   }
 
   std::array<double, kSkins> skin_{};
-  double making_;
+  double making_, entry_;
   int largest_ = 0;
   double entries_ = 0;
   Memory learned_;

@@ -177,26 +177,31 @@ struct Step {
       }
       go_over(i, pairs);
     }
-    complete(i, now, pairs.rule, pairs.sum, pairs.sound, before, x, v, from, to);
+    complete(i, now, pairs.rule, pairs.sum, pairs.sound, before, x, v, rest(i, from), to);
+  }
+
+  // What of a particle its pairs do not need.
+  struct Rest {
+    Three<uint32_t> residue;
+    typename Policy::Extra u;
+  };
+  CUBOCT_DEVICE Rest rest(uint32_t i, const ParticlesView<Policy>& from) const {
+    Rest rest{from.residue.load(i), {}};
+    if (from.u) rest.u = from.u[i];
+    return rest;
   }
 
   // Kicks and moves the particle, and looks whether the step may be.
   template <class Cached>
   CUBOCT_DEVICE void complete(uint32_t i, uint32_t now, const Cached& rule, const typename Policy::Sum& sum,
                               bool sound, const typename Policy::Position& before,
-                              typename Policy::Position x, typename Policy::Velocity v,
-                              const ParticlesView<Policy>& from, const ParticlesView<Policy>& to) const {
-    auto residue = from.residue.load(i);
-    if (from.u) {
-      auto u = from.u[i];
-      sound &= Policy::finish(rule, sum, x, residue, v, &u);
-      to.u[i] = u;
-    } else {
-      sound &= Policy::finish(rule, sum, x, residue, v, nullptr);
-    }
+                              typename Policy::Position x, typename Policy::Velocity v, Rest rest,
+                              const ParticlesView<Policy>& to) const {
+    sound &= Policy::finish(rule, sum, x, rest.residue, v, to.u ? &rest.u : nullptr);
+    if (to.u) to.u[i] = rest.u;
     to.x[i] = x;
     to.v[i] = v;
-    to.residue.store(i, residue);
+    to.residue.store(i, rest.residue);
     for (const Copies<Policy>& copy : copies)
       if (copy.x && i >= copy.first && i < copy.end) {
         copy.x[i + copy.shift] = x;

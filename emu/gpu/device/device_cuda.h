@@ -48,6 +48,11 @@ class Stream {
     check(cudaStreamCreateWithPriority(&stream_, cudaStreamNonBlocking, urgent ? greatest : least),
           "make a stream");
     check(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device), "device");
+    // What sums need beside is asked for again soon: the pool would give it back at each wait for the host.
+    cudaMemPool_t pool = nullptr;
+    uint64_t all = UINT64_MAX;
+    check(cudaDeviceGetDefaultMemPool(&pool, device), "device");
+    check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "device");
   }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
@@ -218,10 +223,11 @@ __global__ void __launch_bounds__(kLargestBlock)
   if (threadIdx.x % 32 == 0) atomicMax(out, most);
 }
 
-// Where the blocks of a launch wait for each other. Words of a line of memory each.
+// Where the blocks of a launch wait for each other: how many ends of steps they have come to, counted on from
+// the launch, and a bit once one of them goes on no further.
 struct MeetingWords {
-  uint32_t arrived, beside[31];  // blocks, counted on from the launch
-  uint32_t opened, behind[31];   // the last step that all have ended, twice; and 1 where another follows
+  static constexpr uint32_t kClosed = 0x80000000u;
+  uint32_t arrived;
 };
 class Meeting {
  public:
@@ -241,33 +247,33 @@ class Meeting {
   MeetingWords* words_ = nullptr;
 };
 
-// A block's wait for the others at the end of step `number`; whether another follows, which the last to come
-// asks, so that all are told the same. What any of them wrote is then seen by all.
-template <class F>
-__device__ inline bool meet(MeetingWords* words, uint32_t number, uint32_t steps, const F& f) {
-  __shared__ uint32_t on;
+// A block's wait for the others at the end of step `number`, which `goes_on` says of its first thread's look
+// at the step's begin. False: some block goes on no further. What any of them wrote is then seen by all.
+__device__ inline bool meet(MeetingWords* words, uint32_t number, bool goes_on) {
+  __shared__ bool on;
   __syncthreads();
   if (threadIdx.x == 0) {
-    __threadfence();
-    if (atomicAdd(&words->arrived, 1u) + 1 == number * gridDim.x) {
-      __threadfence();
-      on = number < steps && f.goes_on(number + 1);
-      atomicExch(&words->opened, 2 * number + on);
-    } else {
+    if (goes_on) {
+      asm volatile("red.release.gpu.global.add.u32 [%0], 1;" ::"l"(&words->arrived) : "memory");
       uint32_t seen;
-      do asm volatile("ld.acquire.gpu.u32 %0, [%1];" : "=r"(seen) : "l"(&words->opened) : "memory");
-      while (seen < 2 * number);
-      on = seen & 1;
+      do asm volatile("ld.acquire.gpu.u32 %0, [%1];" : "=r"(seen) : "l"(&words->arrived) : "memory");
+      while (seen < number * gridDim.x);
+      on = seen < MeetingWords::kClosed;
+    } else {
+      asm volatile("red.relaxed.gpu.global.or.b32 [%0], %1;" ::"l"(&words->arrived),
+                   "r"(MeetingWords::kClosed)
+                   : "memory");
+      on = false;
     }
-    __threadfence();
   }
   __syncthreads();
   return on;
 }
 
 // The threads that share an index: neighbours in a warp.
+template <int kThreads>
 struct PairLanes {
-  static constexpr int kCount = 8;
+  static constexpr int kCount = kThreads;
   int lane;
   // All lanes of the warp call it, and the others.
   __device__ uint32_t most_of_warp(uint32_t value) const { return __reduce_max_sync(0xffffffffu, value); }
@@ -288,34 +294,53 @@ struct PairLanes {
       value += __shfl_xor_sync(0xffffffffu, static_cast<long long>(value), k, kCount);
     return value;
   }
+  // Of the lanes before this one; of all.
+  __device__ uint32_t before(uint32_t value) const {
+    uint32_t sum = value;
+#pragma unroll
+    for (int k = 1; k < kCount; k *= 2) {
+      const uint32_t other = __shfl_up_sync(0xffffffffu, sum, k, kCount);
+      if (lane >= k) sum += other;
+    }
+    return sum - value;
+  }
+  __device__ uint32_t total(uint32_t value) const {
+#pragma unroll
+    for (int k = kCount / 2; k > 0; k /= 2) value += __shfl_xor_sync(0xffffffffu, value, k, kCount);
+    return value;
+  }
   __device__ bool all(bool value) const {
+    static_assert(kCount < 32);
     const unsigned mine = ((1u << kCount) - 1) << (threadIdx.x % 32 / kCount * kCount);
     return (__ballot_sync(0xffffffffu, value) & mine) == mine;
   }
 };
 
-template <class F>
-__global__ void __launch_bounds__(kLargestBlock)
+// Threads of a multiprocessor that are to be there at once: with eight lanes there are few, and have 128
+// registers.
+template <class Lanes>
+inline constexpr int kPresent = Lanes::kCount == 8 ? 512 : 1024;
+// Each index has its threads for all steps. Whether there is a step is known as soon as it begins: one that
+// some block's look stops is not ended, and nobody reads what it left.
+template <class Lanes, class F>
+__global__ void __launch_bounds__(kLargestBlock, kPresent<Lanes> / kLargestBlock)
     together_kernel(uint32_t end, const uint32_t* cache, uint32_t words, uint32_t steps,
                     MeetingWords* meeting, uint64_t* sums, const __grid_constant__ F f) {
   extern __shared__ uint4 memory[];
   auto* here = reinterpret_cast<uint32_t*>(memory);
   for (uint32_t k = threadIdx.x; k < words; k += blockDim.x) here[k] = cache[k];
   __syncthreads();
-  constexpr uint32_t kPerWarp = 32 / PairLanes::kCount;
-  const uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x;
-  const PairLanes lanes{static_cast<int>(thread % PairLanes::kCount)};
+  const uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, i = thread / Lanes::kCount;
+  const Lanes lanes{static_cast<int>(thread % Lanes::kCount)};
+  const auto kept = f.keep(i, i < end, lanes);
   for (uint32_t number = 1;; ++number) {
-    unsigned long long sum = 0;
-    // The last indices fill a warp, so that all of its lanes come.
-    for (uint32_t i = thread / PairLanes::kCount; i < (end + kPerWarp - 1) / kPerWarp * kPerWarp;
-         i += gridDim.x * blockDim.x / PairLanes::kCount)
-      sum += f(i, i < end, here, number, lanes);
+    const bool goes_on = f.goes_on(number);
+    unsigned long long sum = f(i, i < end, goes_on, kept, here, number, lanes);
     if (__any_sync(0xffffffffu, sum != 0)) {
       for (int k = 16; k > 0; k /= 2) sum += __shfl_down_sync(0xffffffffu, sum, k);
       if (threadIdx.x % 32 == 0) atomicAdd(reinterpret_cast<unsigned long long*>(sums + number), sum);
     }
-    if (!meet(meeting, number, steps, f)) return;
+    if (number == steps || !meet(meeting, number, goes_on)) return;
   }
 }
 
@@ -366,18 +391,17 @@ void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int block, co
   check(cudaGetLastError(), "start a kernel");
 }
 // Steps 1 to `steps` of all indices below `end`, in one launch, while f.goes_on(step). What f gives is added
-// up in sums[step]. False, and nothing is done: the device does not do so.
-template <class F>
+// up in sums[step]. False, and nothing is done: the device does not hold so many at once.
+template <class Lanes, class F>
 bool go_on_together(Stream& stream, uint32_t end, int block, const void* cache, size_t words, uint32_t steps,
                     Meeting& meeting, uint64_t* sums, const F& f) {
   stream.activate();
-  const auto kernel = together_kernel<F>;
+  const auto kernel = together_kernel<Lanes, F>;
   ask_for_memory(kernel, words * 4, "hold a rule's tables in a block's shared memory");
   int each = 0;
   check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, kernel, block, words * 4), "count blocks");
-  const unsigned blocks = std::min(blocks_for(end * PairLanes::kCount, block),
-                                   static_cast<unsigned>(each * stream.multiprocessors()));
-  if (blocks == 0) return false;
+  const unsigned blocks = blocks_for(end * Lanes::kCount, block);
+  if (blocks > static_cast<unsigned>(each * stream.multiprocessors())) return false;
   MeetingWords* met = meeting.begin(stream);
   const auto* from = static_cast<const uint32_t*>(cache);
   auto count = static_cast<uint32_t>(words);
@@ -414,6 +438,23 @@ void max_each(Stream& stream, uint32_t begin, uint32_t end, int block, const F& 
   if (begin >= end) return;
   stream.activate();
   max_kernel<<<resident_blocks(stream, end - begin, block), block, 0, stream.get()>>>(begin, end, f, out);
+  check(cudaGetLastError(), "start a kernel");
+}
+template <class Lanes, class F>
+__global__ void __launch_bounds__(kLargestBlock)
+    max_shared_kernel(uint32_t end, const __grid_constant__ F f, uint32_t* out) {
+  const uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x, i = thread / Lanes::kCount;
+  const uint32_t most =
+      __reduce_max_sync(0xffffffffu, f(i, i < end, Lanes{static_cast<int>(thread % Lanes::kCount)}));
+  if (threadIdx.x % 32 == 0) atomicMax(out, most);
+}
+// The most that f(index, whether there is one, lanes) answers, of all indices below `end`, each of some
+// lanes.
+template <class Lanes, class F>
+void max_shared(Stream& stream, uint32_t end, int block, const F& f, uint32_t* out) {
+  if (end == 0) return;
+  stream.activate();
+  max_shared_kernel<Lanes><<<blocks_for(end * Lanes::kCount, block), block, 0, stream.get()>>>(end, f, out);
   check(cudaGetLastError(), "start a kernel");
 }
 inline void exclusive_sums(Stream& stream, const uint32_t* in, uint32_t* out, uint32_t count) {

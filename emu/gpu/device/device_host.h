@@ -100,6 +100,7 @@ struct Meeting {
   explicit Meeting(int) {}
 };
 // The threads that share an index.
+template <int>
 struct PairLanes {
   static constexpr int kCount = 1;
   int lane = 0;
@@ -109,16 +110,19 @@ struct PairLanes {
     return value;
   }
   int64_t sum(int64_t value) const { return value; }
+  uint32_t before(uint32_t) const { return 0; }
+  uint32_t total(uint32_t value) const { return value; }
   bool all(bool value) const { return value; }
 };
 // Steps 1 to `steps` of all indices below `end`, in one launch, while f.goes_on(step). What f gives is added
 // up in sums[step]. False, and nothing is done: the device does not do so.
-template <class F>
+template <class Lanes, class F>
 bool go_on_together(Stream& stream, uint32_t end, int, const void* cache, size_t, uint32_t steps, Meeting&,
                     uint64_t* sums, const F& f) {
   stream.later([=] {
     for (uint32_t number = 1; number <= steps && f.goes_on(number); ++number)
-      for (uint32_t i = 0; i < end; ++i) sums[number] += f(i, true, cache, number, PairLanes{});
+      for (uint32_t i = 0; i < end; ++i)
+        sums[number] += f(i, true, f.goes_on(number), f.keep(i, true, Lanes{}), cache, number, Lanes{});
   });
   return true;
 }
@@ -146,6 +150,14 @@ template <class F>
 void max_each(Stream& stream, uint32_t begin, uint32_t end, int, const F& f, uint32_t* out) {
   stream.later([=] {
     for (uint32_t i = begin; i < end; ++i) *out = std::max(*out, f(i));
+  });
+}
+// The most that f(index, whether there is one, lanes) answers, of all indices below `end`, each of some
+// lanes.
+template <class Lanes, class F>
+void max_shared(Stream& stream, uint32_t end, int, const F& f, uint32_t* out) {
+  stream.later([=] {
+    for (uint32_t i = 0; i < end; ++i) *out = std::max(*out, f(i, true, Lanes{}));
   });
 }
 inline void exclusive_sums(Stream& stream, const uint32_t* in, uint32_t* out, uint32_t count) {

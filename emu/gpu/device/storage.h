@@ -178,16 +178,14 @@ struct Order {
 
 // By id within a cell: sums over a list then have one order, whatever order the places were taken in.
 struct OrderInCell {
-  const uint32_t *first, *count, *id;
-  uint32_t* order;
-  CUBOCT_DEVICE void operator()(uint32_t c) const {
-    uint32_t* const begin = order + first[c];
-    for (uint32_t k = 1; k < count[c]; ++k) {
-      const uint32_t moving = begin[k], key = id[moving];
-      uint32_t to = k;
-      for (; to > 0 && id[begin[to - 1]] > key; --to) begin[to] = begin[to - 1];
-      begin[to] = moving;
-    }
+  const uint32_t *first, *count, *id, *rank;
+  const uint32_t* order;
+  uint32_t* by_id;
+  CUBOCT_DEVICE void operator()(uint32_t k) const {
+    const uint32_t i = order[k], key = id[i], begin = first[rank[i]], end = begin + count[rank[i]];
+    uint32_t place = begin;
+    for (uint32_t m = begin; m < end; ++m) place += id[order[m]] < key;
+    by_id[place] = i;
   }
 };
 
@@ -246,44 +244,96 @@ struct MakeList {
   uint32_t width;
   size_t stride;
 
+  static constexpr int kSide = 2 * Policy::kReach + 1, kCells = kSide * kSide * kSide;
+
+  struct Found {
+    uint32_t near = 0, further = 0;
+  };
+
   CUBOCT_DEVICE uint32_t operator()(uint32_t i) const {
+    const Seen seen = look(i);
+    Found found;
+    for (int k = 0; k < kCells; ++k) in_cell(i, seen, k, Keep{*this, i, found});
+    counts[i] = found.near | found.further << kNearBits;
+    return found.near + found.further;
+  }
+
+  // By several lanes, each of which looks into a cell; they come all, those of no particle with `there`
+  // false. First how many a cell has, then where its own stand behind those of the cells before it.
+  template <class Lanes>
+  CUBOCT_DEVICE uint32_t operator()(uint32_t index, bool there, const Lanes& lanes) const {
+    const uint32_t i = there ? index : 0;
+    const Seen seen = look(i);
+    Found all;
+    for (int from = 0; from < kCells; from += Lanes::kCount) {
+      const int k = from + lanes.lane;
+      Found here;
+      if (k < kCells) in_cell(i, seen, k, Count{*this, here});
+      Found before{all.near + lanes.before(here.near), all.further + lanes.before(here.further)};
+      if (there && k < kCells) in_cell(i, seen, k, Keep{*this, i, before});
+      all.near += lanes.total(here.near), all.further += lanes.total(here.further);
+    }
+    if (!there) return 0;
+    if (lanes.lane == 0) counts[i] = all.near | all.further << kNearBits;
+    return all.near + all.further;
+  }
+
+ private:
+  struct Seen {
     float own[3];
-    for (int a = 0; a < 3; ++a) own[a] = Policy::along(view, grid, x[i], a);
-    const CellAt home = cell[i];
-    const float limit = radius * radius, near2 = near * near;
-    constexpr int reach = Policy::kReach;
-    uint32_t found = 0, further = 0;  // near ones, others
-    for (int dz = -reach; dz <= reach; ++dz)
-      for (int dy = -reach; dy <= reach; ++dy)
-        for (int dx = -reach; dx <= reach; ++dx) {
-          const float gx = gap(own[0], dx, grid.edge[0]), gy = gap(own[1], dy, grid.edge[1]),
-                      gz = gap(own[2], dz, grid.edge[2]);
-          if (gx * gx + gy * gy + gz * gz > limit) continue;
-          const int32_t there[3] = {home.c[0] + dx, home.c[1] + dy, home.c[2] + dz};
-          const uint32_t c = grid.find(there);
-          if (c == kNoCell) continue;
-          const uint32_t end = first[c] + count[c];
-          for (uint32_t j = first[c]; j < end; ++j) {
-            if (j == i && dx == 0 && dy == 0 && dz == 0) continue;
-            bool same = true;  // others share the cell's storage where it folds
-            if (grid.folds)
-              for (int a = 0; a < 3; ++a) same = same && (grid.wraps[a] || cell[j].c[a] == there[a]);
-            if (!same) continue;
-            const auto other = x[j];
-            const float ex =
-                Policy::along(view, grid, other, 0) - own[0] + static_cast<float>(dx) * grid.edge[0];
-            const float ey =
-                Policy::along(view, grid, other, 1) - own[1] + static_cast<float>(dy) * grid.edge[1];
-            const float ez =
-                Policy::along(view, grid, other, 2) - own[2] + static_cast<float>(dz) * grid.edge[2];
-            const float square = ex * ex + ey * ey + ez * ez;
-            if (square > limit) continue;
-            const uint32_t row = square <= near2 ? found++ : width - 1 - further++;
-            if (row < width) entries[row * stride + i] = Entry<Policy::kReach>::of(j, dx, dy, dz);
-          }
-        }
-    counts[i] = found | further << kNearBits;
-    return found + further;
+    CellAt home;
+  };
+  CUBOCT_DEVICE Seen look(uint32_t i) const {
+    Seen seen{{}, cell[i]};
+    for (int a = 0; a < 3; ++a) seen.own[a] = Policy::along(view, grid, x[i], a);
+    return seen;
+  }
+
+  struct Count {
+    const MakeList& list;
+    Found& found;
+    CUBOCT_DEVICE void operator()(uint32_t, float square, int, int, int) const {
+      ++(square <= list.near * list.near ? found.near : found.further);
+    }
+  };
+  struct Keep {
+    const MakeList& list;
+    uint32_t i;
+    Found& found;
+    CUBOCT_DEVICE void operator()(uint32_t j, float square, int dx, int dy, int dz) const {
+      const uint32_t row = square <= list.near * list.near ? found.near++ : list.width - 1 - found.further++;
+      if (row < list.width) list.entries[row * list.stride + i] = Entry<Policy::kReach>::of(j, dx, dy, dz);
+    }
+  };
+
+  // Calls use(particle, square of its distance, where its cell lies) for those of cell number k that are
+  // near.
+  template <class Use>
+  CUBOCT_DEVICE void in_cell(uint32_t i, const Seen& seen, int k, const Use& use) const {
+    const int dx = k % kSide - Policy::kReach, dy = k / kSide % kSide - Policy::kReach,
+              dz = k / (kSide * kSide) - Policy::kReach;
+    const float(&own)[3] = seen.own;
+    const float limit = radius * radius;
+    const float gx = gap(own[0], dx, grid.edge[0]), gy = gap(own[1], dy, grid.edge[1]),
+                gz = gap(own[2], dz, grid.edge[2]);
+    if (gx * gx + gy * gy + gz * gz > limit) return;
+    const int32_t at[3] = {seen.home.c[0] + dx, seen.home.c[1] + dy, seen.home.c[2] + dz};
+    const uint32_t c = grid.find(at);
+    if (c == kNoCell) return;
+    const uint32_t end = first[c] + count[c];
+    for (uint32_t j = first[c]; j < end; ++j) {
+      if (j == i && dx == 0 && dy == 0 && dz == 0) continue;
+      bool same = true;  // others share the cell's storage where it folds
+      if (grid.folds)
+        for (int a = 0; a < 3; ++a) same = same && (grid.wraps[a] || cell[j].c[a] == at[a]);
+      if (!same) continue;
+      const auto other = x[j];
+      const float ex = Policy::along(view, grid, other, 0) - own[0] + static_cast<float>(dx) * grid.edge[0];
+      const float ey = Policy::along(view, grid, other, 1) - own[1] + static_cast<float>(dy) * grid.edge[1];
+      const float ez = Policy::along(view, grid, other, 2) - own[2] + static_cast<float>(dz) * grid.edge[2];
+      const float square = ex * ex + ey * ey + ez * ez;
+      if (square <= limit) use(j, square, dx, dy, dz);
+    }
   }
 };
 
