@@ -84,7 +84,7 @@ FrameFeed::~FrameFeed() { leave(); }
 void FrameFeed::leave() {
   if (socket_ >= 0) close(socket_);
   socket_ = -1;
-  paused_ = false;
+  paused_ = has_all_ = false;
 }
 
 // The head comes before the first frame.
@@ -160,10 +160,20 @@ void FrameFeed::show(const Frame& frame, const State* state) {
     leave();
   };
   if (!begin()) return give_up();
-  const ViewFrame made = form_.make(frame, state);
+  ViewFrame made = form_.make(frame, state);
+  made.read = curves_;
+  (has_all_ ? fresh_ : all_).append_to(made.read);
   if (!send(made.json(), made.blocks)) return give_up();
+  has_all_ = true;
+  fresh_.clear();
   next_ = Clock::now() + spent();
   obey(true);
+}
+
+void FrameFeed::read(const std::vector<Curve>& of, uint64_t step, Values values) {
+  if (curves_.empty()) curves_ = of;
+  all_.add(step, values);
+  fresh_.add(step, values);
 }
 
 }  // namespace cuboct

@@ -7,8 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
+#include "model/trace/curve_readings.h"
 #include "model/trace/view_frame.h"
 
 namespace cuboct {
@@ -50,6 +52,8 @@ class FrameFeed {
   // Takes a twentieth of the run's time at most: frames that come sooner are left out, but for those that a
   // page waits for one by one. Without a page, a system call.
   void show(const Frame& frame, const State* state);
+  // Goes with the next frame that is shown.
+  void read(const std::vector<Curve>& of, uint64_t step, Values values);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -60,8 +64,12 @@ class FrameFeed {
 
   std::string directory_, engine_;
   ViewFrames form_;
+  // Of all readings, for a page that comes late; and of those since the last frame that was shown.
+  static constexpr size_t kAll = 2048, kFresh = 256;
+  ThinnedReadings all_{kAll}, fresh_{kFresh};
+  std::vector<Curve> curves_;  // without readings
   int socket_ = -1;
-  bool paused_ = false;
+  bool paused_ = false, has_all_ = false;  // has_all: the page, but for the fresh ones
   Clock::time_point next_ = Clock::now();
 };
 

@@ -187,6 +187,9 @@ Ended run_once(const RunOptions& given) {
     recorder.emplace(std::move(kept), loaded);
     feed.emplace(options.out, head, frame_style(scene), loaded.setup.plan.particles, options.engine);
     if (options.view) view.emplace(options.out, loaded, request.steps, options.opens);
+    request.read = [&](const std::vector<Curve>& of, uint64_t step, Values values) {
+      feed->read(of, step, values);
+    };
     request.keep = [&](const RunState& frame) {
       std::visit([&](const auto& state) { recorder->keep(state); }, frame);
     };

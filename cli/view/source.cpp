@@ -2,19 +2,9 @@
 #include "cli/view/source.h"
 
 #include "model/base/json.h"
+#include "model/trace/curve_readings.h"
 
 namespace cuboct {
-namespace {
-
-std::string curve_json(const Curve& curve) {
-  std::vector<size_t> steps(curve.step.begin(), curve.step.end());
-  return json_object({{"name", json(curve.name)},
-                      {"unit", json(curve.unit)},
-                      {"step", json(steps)},
-                      {"value", json(curve.value)}});
-}
-
-}  // namespace
 
 std::string Story::json() const {
   return json_object(

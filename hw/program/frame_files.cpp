@@ -28,8 +28,16 @@ void FrameSender::send(const RunState& frame) {
   const std::string path = name_of(prefix_, sent_);
   TraceWriter writer(path, temporary_beside(path), false);
   std::visit([&](const auto& state) { writer.add(state); }, frame);
-  writer.finish({});
+  Trace rest;
+  rest.curves = curves_;
+  writer.finish(rest);
+  curves_ = bare(std::move(curves_));
   ++sent_;
+}
+
+void FrameSender::read(const std::vector<Curve>& of, uint64_t step, Values values) {
+  if (curves_.empty()) curves_ = of;
+  add_reading(curves_, step, values);
 }
 
 FrameReceiver::FrameReceiver(std::string prefix) : prefix_(std::move(prefix)) {
@@ -46,11 +54,16 @@ FrameReceiver::FrameReceiver(std::string prefix) : prefix_(std::move(prefix)) {
   for (const fs::path& file : left) fs::remove(file);
 }
 
-bool FrameReceiver::receive(const std::function<void(RunState)>& see) {
+bool FrameReceiver::receive(const std::function<void(RunState)>& see, const TakeReading& read) {
   const std::string path = name_of(prefix_, received_);
   if (!fs::exists(path)) return false;
   {
     const TraceReader reader(path);
+    if (read) {
+      const std::vector<Curve>& curves = reader.rest().curves;
+      const std::vector<Curve> of = bare(curves);
+      for_each_reading(curves, [&](uint64_t step, Values values) { read(of, step, values); });
+    }
     reader.frames([&](State state) { see(std::move(state)); });
     reader.bodies([&](RealFrame frame) { see(std::move(frame)); });
   }

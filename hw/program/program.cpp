@@ -99,7 +99,12 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   std::string trouble;
   if (!options.out.empty() && leads) {
     writer.emplace(options.out, temporary_beside(options.out), !parsed.unpacked);
-    if (!parsed.frame_files.empty()) sender.emplace(parsed.frame_files);
+    if (!parsed.frame_files.empty()) {
+      sender.emplace(parsed.frame_files);
+      options.run.read = [&sender](const std::vector<Curve>& of, uint64_t step, Values values) {
+        sender->read(of, step, values);
+      };
+    }
     options.run.keep = [&](const RunState& frame) {
       std::visit(
           [&](const auto& state) {

@@ -61,7 +61,7 @@ std::string Remote::errors() const {
   return text;
 }
 
-bool Remote::take_frame() { return frames_ && frames_->receive(run_.request.keep); }
+bool Remote::take_frame() { return frames_ && frames_->receive(run_.request.keep, run_.request.read); }
 
 void Remote::wait() {
   const auto begun = [this] { return !over_mpi() || fs::exists(file(".begun")); };

@@ -95,6 +95,7 @@ class Loop {
   const RunRequest& request_;
   const CheckpointPlan& save_plan_;
   Meter meter_;
+  const std::vector<Curve> curves_;  // without readings
   const std::vector<uint64_t> looks_;
   std::unique_ptr<Engine> engine_;
   std::optional<Journal> journal_;
@@ -122,9 +123,10 @@ Loop::Loop(const Scene& scene, const EngineKind& kind, const RunRequest& request
               .watch = request.watch,
               .table_error = kind.table_error,
               .threads = kind.threads}),
+      curves_(meter_.curves()),
       looks_(kind.looks ? kind.looks(energy_steps()) : energy_steps()),
       log_({kind.name, request.steps, kind.relaxes ? 0 : kind.particles, energy_steps(), request.log}, scene,
-           meter_.curves()),
+           curves_),
       piece_(kind.in_pieces || request.checkpoint.every_seconds > 0 || request.log == LogRows::seconds ||
                      stderr_is_terminal()
                  ? 1
@@ -192,6 +194,9 @@ void Loop::resume() {
   if (leads()) {
     resume_trace(head);
     check_alike(head);
+    if (request_.read)
+      for_each_reading(trace_.curves,
+                       [&](uint64_t step, Values values) { request_.read(curves_, step, values); });
     // What was kept before is taken anew from here on: a refusal above leaves all as it was.
     journal_->for_each_frame([&](RunState state) { give(request_, std::move(state), trace_); });
   }
@@ -232,9 +237,11 @@ void Loop::record() {
     const bool energies = request_.energies && among(energy_steps(), step);
     measure({.probes = true, .energies = energies}, among(looks_, step));
     look_for_end();
-    if (leads() && journal_)
-      if (const std::vector<double> values = meter_.values_at(step); !values.empty())
+    if (leads() && (journal_ || request_.read))
+      if (const std::vector<double> values = meter_.values_at(step); !values.empty()) {
         journal([&](Journal& to) { to.sample(step, values); });
+        if (request_.read) request_.read(curves_, step, values);
+      }
   }
   if (among(request_.frames, step)) keep();
 }

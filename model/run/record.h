@@ -12,6 +12,7 @@
 #include "model/run/engine.h"
 #include "model/run/run_log.h"
 #include "model/scene/scene.h"
+#include "model/trace/curve_readings.h"
 
 namespace cuboct {
 
@@ -35,6 +36,8 @@ struct RunRequest {
   std::vector<uint64_t> probes;  // steps at which the scene's probes are read, ascending
   // Takes the kept states as they come, those before a checkpoint again; without one the trace holds them.
   std::function<void(const RunState&)> keep;
+  // Takes what is read as it comes, before the state of the same step is kept.
+  TakeReading read;
   bool energies = false;  // read with the probes, and at the last state
   // Of the probes' steps, those at which energies are read, ascending; empty: all.
   std::vector<uint64_t> energy_steps;

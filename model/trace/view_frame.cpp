@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "model/base/json.h"
+#include "model/trace/curve_readings.h"
 
 namespace cuboct {
 namespace {
@@ -45,10 +46,13 @@ size_t ViewBlock::width() const {
 }
 
 std::string ViewFrame::json() const {
-  return json_object({{"step", std::to_string(step)},
-                      {"time", cuboct::json(time)},
-                      {"lower", vector_json(lower)},
-                      {"extent", vector_json(extent)}});
+  std::string text = json_object({{"step", std::to_string(step)},
+                                  {"time", cuboct::json(time)},
+                                  {"lower", vector_json(lower)},
+                                  {"extent", vector_json(extent)}});
+  if (read.empty()) return text;
+  text.back() = ',';
+  return text + "\"read\":" + json_array(read, curve_json) + "}";
 }
 
 ViewFrames::ViewFrames(const TraceHead& head, const FrameStyle& style, size_t particles, size_t most)

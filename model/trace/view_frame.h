@@ -10,6 +10,7 @@
 
 #include "model/contract/state.h"
 #include "model/trace/frame.h"
+#include "model/trace/trace.h"
 #include "model/trace/trace_head.h"
 
 namespace cuboct {
@@ -30,6 +31,7 @@ struct ViewFrame {
   double time = 0;                  // s
   Vec3 lower, extent;               // m, of the particles that have a place
   std::vector<std::string> blocks;  // in the order of ViewFrames::blocks()
+  std::vector<Curve> read{};        // of a run that goes: what probes have read since the frame before
   std::string json() const;         // all but the blocks
 };
 

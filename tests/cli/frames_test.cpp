@@ -75,19 +75,31 @@ TEST_F(ProgramFrames, TakeNoMoreRoomThanTheirReaderLeaves) {
       State state{10 * step, std::vector<Particle>(3)};
       for (uint32_t id = 0; id < 3; ++id)
         state.particles[id].id = id, state.particles[id].x[0] = static_cast<int64_t>(step);
+      for (uint64_t part = 0; part < step; ++part)
+        sender.read({{"grip.force", "N", {}, {}}, {"energy.total", "J", {}, {}}}, 10 * step + part,
+                    std::vector<double>(part == 0 ? 2 : 1, 0.1 * static_cast<double>(part)));
       sender.send(state);
     }
   });
   ASSERT_TRUE(comes([&] { return fs::exists(last); }));
   std::this_thread::sleep_for(std::chrono::milliseconds(50));  // for one that would not wait
   EXPECT_FALSE(fs::exists(beyond));
-  uint64_t step = 0;
+  uint64_t step = 0, read = 0;
   const auto see = [&](const RunState& frame) {
     EXPECT_EQ(std::get<State>(frame).step, 10 * step);
     EXPECT_EQ(std::get<State>(frame).particles[2].x[0], static_cast<int64_t>(step));
+    EXPECT_EQ(read, step);
+    read = 0;
     ++step;
   };
-  EXPECT_TRUE(comes([&] { return ours.receive(see), step == 40; }));
+  const auto take = [&](const std::vector<Curve>& of, uint64_t at, Values values) {
+    EXPECT_EQ(of[0].name + of[0].unit + of[1].name + of[1].unit, "grip.forceNenergy.totalJ");
+    EXPECT_EQ(at, 10 * step + read);
+    ASSERT_EQ(values.size(), read == 0 ? 2U : 1U);
+    EXPECT_EQ(values.back(), 0.1 * static_cast<double>(read));
+    ++read;
+  };
+  EXPECT_TRUE(comes([&] { return ours.receive(see, take), step == 40; }));
   EXPECT_EQ(step, 40u);
   EXPECT_FALSE(fs::exists(prefix + ".39"));
 }

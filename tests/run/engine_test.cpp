@@ -57,6 +57,21 @@ void expect_equal(const std::vector<Curve>& a, const std::vector<Curve>& b, doub
   }
 }
 
+// What was handed over while the run went: all but what the last state alone was read for.
+void expect_beginning(const std::vector<Curve>& seen, const std::vector<Curve>& all) {
+  ASSERT_EQ(seen.size(), all.size());
+  for (size_t k = 0; k < all.size(); ++k) {
+    EXPECT_EQ(seen[k].name + seen[k].unit, all[k].name + all[k].unit);
+    ASSERT_EQ(seen[k].step.size(), seen[k].value.size());
+    ASSERT_GT(seen[k].step.size(), 0U);
+    EXPECT_GE(seen[k].step.size() + 1, all[k].step.size()) << all[k].name;
+    for (size_t n = 0; n < seen[k].step.size(); ++n) {
+      EXPECT_EQ(seen[k].step[n], all[k].step[n]) << all[k].name;
+      EXPECT_EQ(seen[k].value[n], all[k].value[n]) << all[k].name << " at sample " << n;
+    }
+  }
+}
+
 void expect_equal(const Recorded& golden, const Recorded& run, double share) {
   const Trace &a = golden.trace, &b = run.trace;
   EXPECT_EQ(a.plan_hash, b.plan_hash);
@@ -300,8 +315,14 @@ void EveryEngine::go_on(const Bed& bed, uint64_t steps, const std::vector<uint64
   ASSERT_TRUE(std::filesystem::exists(path));
   request.keep = {};
   request.checkpoint.resume = true;
+  std::vector<Curve> seen;
+  request.read = [&](const std::vector<Curve>& of, uint64_t step, Values values) {
+    if (seen.empty()) seen = of;
+    add_reading(seen, step, values);
+  };
   const Recorded run = record(bed.scene, kind, request);
   remove_checkpoint(path);
+  expect_beginning(seen, run.trace.curves);
   EXPECT_EQ(run.resumed_at, 5u);
   request.checkpoint = {};
   expect_equal(record(bed.scene, golden_kind(bed.scene, bed.plan), request), run, tolerance());

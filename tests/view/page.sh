@@ -39,5 +39,8 @@ if [ "$tier" = whole ]; then
   saved doubles scenes/lj_block.toml --steps 40 --frame-every 20 --engine reference
   browser=$chromium
 fi
-"$node" "$here/served_page_test.mjs" "$cuboct" "$work/words" "$work/words.json" "$root/scenes/lj_block.toml" "$work/live" "$browser" "$study_web" \
+# Its temperature is read at each frame at least, energies at every second reading.
+sed 's/^steps = 1000/&\nprobe_every = 25\nenergy_every = 50/' "$root/scenes/lj_block.toml" >"$work/live.toml"
+printf '\n[[probe]]\nname = "block"\nkind = "temperature"\nregion = { shape = "sphere", radius = 100 }  # all\n' >>"$work/live.toml"
+"$node" "$here/served_page_test.mjs" "$cuboct" "$work/words" "$work/words.json" "$work/live.toml" "$work/live" "$browser" "$study_web" \
   ${pictures:+"$pictures"}

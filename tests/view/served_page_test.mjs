@@ -143,6 +143,14 @@ async function a_live_run(browser) {
     assert.equal(await page.evaluate(() => cuboct.story.frames.at(-1).step), step + 50 * k);
   }
   await until(page, (frame) => cuboct.page.frame === frame, paused + 2);
+  // Its curves end with the newest frame, as drawn.
+  const live = await page.evaluate(() => cuboct.story.curves), last = step + 150;
+  const drawn_to = await page.evaluate(() => cuboct.page.charts.map((chart) => chart.x.at(-1) / chart.dt));
+  assert.ok(live.length > 0 && drawn_to.length === live.length);
+  live.forEach((curve, k) => {
+    assert.ok(curve.step.at(-1) <= last && curve.step.at(-1) > last - 50, `${curve.name} ends with ${curve.step.at(-1)} at ${last}`);
+    assert.equal(Math.round(drawn_to[k]), curve.step.at(-1));
+  });
   if (pictures) await page.screenshot({path: `${pictures}/live.png`});
   assert.deepEqual(problems, []);
   await page.click("#continue");
@@ -151,6 +159,10 @@ async function a_live_run(browser) {
   ({page, problems, context} = await open(browser, server.address.all, 400, 860));  // the run goes on
   const again = await frames(page);
   assert.ok(again > paused + 3);
+  // A page that comes late has them from the first on.
+  const late = await page.evaluate(() => cuboct.story.curves);
+  assert.deepEqual(late.map(({step}) => step[0]), live.map(() => 0));
+  assert.ok(late[0].step.at(-1) > last);
   await until(page, (count) => cuboct.story.frames.length > count, again);
   assert.equal(await state(page), "running");
   problems.length = 0;
@@ -159,6 +171,14 @@ async function a_live_run(browser) {
   await until(page, () => globalThis.cuboct?.story.live === false && cuboct.page.charts.length > 0);
   assert.deepEqual(problems.filter((text) => !text.startsWith("dialog: End the run")), []);
   assert.ok(existsSync(out + "/trace.h5"));
+  // What was drawn while it went is what its trace has.
+  const whole = await page.evaluate(() => cuboct.story.curves);
+  for (const [k, {name, unit, step, value}] of [...live.entries(), ...late.entries()]) {
+    const kept = new Map(whole[k].step.map((at, n) => [at, whole[k].value[n]]));
+    assert.deepEqual([name, unit], [whole[k].name, whole[k].unit]);
+    assert.ok(step.length > 1);
+    step.forEach((at, n) => assert.equal(value[n], kept.get(at), `${name} at step ${at}`));
+  }
   assert.match(readFileSync(out + "/run.toml", "utf8"), /state = ['"]interrupted['"]/);
   const kept = await frames(page);
   assert.ok(kept >= again);

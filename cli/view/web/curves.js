@@ -30,12 +30,20 @@ export class Chart {
   constructor(curve, dt, unit_of_time, reduced) {
     this.curve = curve;
     this.dt = dt;
-    this.x = curve.step.map((step) => step * dt);
+    this.unit = unit_of_time;
     this.figure = element("figure", undefined, "curve");
     const caption = element("figcaption", curve.name + (curve.unit && curve.unit !== "1" && !reduced ? ", " + curve.unit : ""));
     this.reading = element("span", "", "reading");
     caption.append(" ", this.reading);
-    this.figure.append(caption, this.drawn(unit_of_time));
+    this.figure.append(caption);
+    this.draw();
+  }
+  // Once more where the curve has grown.
+  draw() {
+    this.x = this.curve.step.map((step) => step * this.dt);
+    this.picture?.remove();
+    this.picture = this.drawn(this.unit);
+    this.figure.append(this.picture);
   }
   drawn(unit) {
     const [x0, x1] = span(this.x), [y0, y1] = span(this.curve.value);
@@ -77,4 +85,19 @@ export function charts_of(story, place) {
   const charts = story.curves.filter((curve) => curve.step.length > 0).map((curve) => new Chart(curve, head.static ? 1 : head.dt, unit, head.reduced));
   place.replaceChildren(...charts.map((chart) => chart.figure));
   return charts;
+}
+
+const kMost = 4096;  // readings of a curve that goes on
+
+// What the frames that came have read goes behind the story's curves. Of very many readings every second one goes.
+export function grow(curves, frames) {
+  for (const {read} of frames)
+    for (const [k, {name, unit, step, value}] of (read || []).entries()) {
+      if (k === curves.length) curves.push({name, unit, step: [], value: []});
+      const curve = curves[k];
+      curve.step.push(...step), curve.value.push(...value);
+      if (curve.step.length <= 2 * kMost) continue;
+      const last = curve.step.length - 1;
+      for (const list of ["step", "value"]) curve[list] = curve[list].filter((_, at) => at % 2 === 0 || at === last);
+    }
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A run while it goes: what is new is asked for again and again, and the newest frame shown. A page that is slow skips frames.
+import {grow} from "./curves.js";
 import {by_id} from "./format.js";
 
 const kEvery = 200;   // ms between questions
@@ -33,7 +34,11 @@ export function follow(page, source) {
       story.frames.push(...news.frames);
       story.lines.push(...news.lines);
       if (news.lines.length) page.tell_lists();
-      if (news.frames.length) by_id("lead").textContent = page.lead();
+      if (news.frames.length) {
+        by_id("lead").textContent = page.lead();
+        grow(story.curves, news.frames);
+        page.tell_curves();
+      }
       by_id("time").max = String(Math.max(0, story.frames.length - 1));
       tell(news.state);
       if (news.frames.length && by_id("follow").checked && !page.playing) {

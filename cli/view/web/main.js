@@ -4,7 +4,7 @@ import {Beside} from "./beside.js";
 import {SavedFrames, ServedFrames, array_of} from "./blocks.js";
 import {tell_particle} from "./chosen.js";
 import {gradient_of, kTypes, range_of, table_of, table_of_types} from "./colours.js";
-import {charts_of} from "./curves.js";
+import {charts_of, grow} from "./curves.js";
 import {by_id, element, number, with_unit} from "./format.js";
 import {follow} from "./live.js";
 import {Machine} from "./machine.js";
@@ -49,8 +49,8 @@ class Page {
     by_id("colour").value = String(Math.max(0, first));
     for (const axis of ["", "x", "y", "z"]) by_id("cut-axis").append(new Option(axis || "no cut", axis));
     this.tell_lists();
-    this.charts = charts_of(this.story, by_id("curves"));
-    by_id("curves-none").hidden = this.charts.length > 0;
+    if (this.story.live) grow(this.story.curves, this.story.frames);
+    this.tell_curves();
     by_id("what-part").hidden = !this.machine;
     this.machine?.begin();
     this.beside?.begin();
@@ -69,6 +69,18 @@ class Page {
     by_id("facts-part").hidden = facts.length === 0;
     by_id("log").textContent = lines.join("\n");
     by_id("log-part").hidden = lines.length === 0;
+  }
+
+  // Of a run that goes, once more where they have grown.
+  tell_curves() {
+    const read = this.story.curves.filter((curve) => curve.step.length > 0);
+    if (this.charts.length === read.length) this.charts.forEach((chart) => chart.draw());
+    else this.charts = charts_of(this.story, by_id("curves"));
+    by_id("curves-none").hidden = this.charts.length > 0;
+    if (this.frame >= 0) this.tell_readings();
+  }
+  tell_readings() {
+    for (const chart of this.charts) chart.at(this.story.frames[this.frame].step);
   }
 
   listen() {
@@ -137,7 +149,7 @@ class Page {
     by_id("time").value = String(frame);
     by_id("now").textContent = `frame ${frame + 1} of ${frames.length}, step ${step}${head.static ? "" : ", " + with_unit(time, head.reduced ? "" : "s", 5)}` +
       (this.beside ? `: ${this.beside.told(frame)}` : "");
-    for (const chart of this.charts) chart.at(step);
+    this.tell_readings();
     ++this.shown_count;
     this.draw();
   }
