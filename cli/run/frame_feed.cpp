@@ -143,6 +143,7 @@ void FrameFeed::obey(bool waits) {
         paused_ = true;
         return;
       case FeedWord::end:
+        has_ended_ = true;
         raise(SIGINT);
         return;
     }

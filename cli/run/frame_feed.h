@@ -54,6 +54,8 @@ class FrameFeed {
   void show(const Frame& frame, const State* state);
   // Goes with the next frame that is shown.
   void read(const std::vector<Curve>& of, uint64_t step, Values values);
+  // Whether the page has asked for the run's end.
+  bool has_ended() const { return has_ended_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -69,7 +71,7 @@ class FrameFeed {
   ThinnedReadings all_{kAll}, fresh_{kFresh};
   std::vector<Curve> curves_;  // without readings
   int socket_ = -1;
-  bool paused_ = false, has_all_ = false;  // has_all: the page, but for the fresh ones
+  bool paused_ = false, has_all_ = false, has_ended_ = false;  // has_all: the page, but for the fresh ones
   Clock::time_point next_ = Clock::now();
 };
 

@@ -327,26 +327,26 @@ constexpr char kPageStyle[] =
     "th,td{padding:.25rem .8rem .25rem 0;text-align:left;border-bottom:1px solid #eee;vertical-align:top}"
     ".plain td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
 
-}  // namespace
-
-std::string page_head(const std::string& title, int refresh) {
+std::string page_head(const std::string& title) {
   // The policy lets a browser run nothing and load nothing.
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{0}"
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" "
       "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<title>{1}</title>\n<style>{2}</style>\n</head>\n<body>\n<h1>{1}</h1>\n",
-      refresh > 0 ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", refresh) : "",
+      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       html_text(title), kPageStyle);
 }
 
+// A PNG file's bytes.
 std::string page_picture(const std::string& png) {
   return fmt::format(
       "<figure class=\"wide\"><img alt=\"The particles, coloured by axial strain\" "
       "src=\"data:image/png;base64,{}\"></figure>\n",
       base64(png.data(), png.size()));
 }
+
+}  // namespace
 
 void write_report(const std::string& directory, const std::string& out) {
   const RunRecord record = read_record(directory);

@@ -120,6 +120,16 @@ std::string plan_text(const RunOptions& options, const Plan& plan) {
 // Frames of a run that is viewed and of which nobody says how many.
 constexpr uint64_t kViewed = 40;
 
+// Of a run, or of each stage.
+struct Pages {
+  std::vector<std::unique_ptr<RunPage>> all;
+  bool ended_run = false;  // one of them has asked for that
+
+  void wait() {
+    for (const auto& page : all) page->wait(ended_run);
+  }
+};
+
 // How a run ended.
 struct Ended {
   int code = 0;
@@ -136,7 +146,7 @@ RunOptions for_scene(RunOptions options, const Scene& scene) {
   return options;
 }
 
-Ended run_once(const RunOptions& given) {
+Ended run_once(const RunOptions& given, Pages& pages) {
   const Loaded loaded = load_plan(given.input, given.engine, given.engines.is_real(given.engine));
   const RunOptions options = for_scene(given, loaded.scene);
   if (options.verbose) fmt::print(stderr, "{}", plan_text(options, loaded.setup.plan));
@@ -161,7 +171,6 @@ Ended run_once(const RunOptions& given) {
   if (options.engines.keeps_checkpoints()) request.checkpoint.path = options.out + "/checkpoint";
   const std::string checkpoint = request.checkpoint.path;
   std::optional<Recorder> recorder;
-  std::optional<LiveView> view;
   const TraceHead head = head_of(loaded, real, false);
   std::optional<FrameFeed> feed;  // until the directory is whole: its page then reads that
   if (!options.out.empty()) {
@@ -180,13 +189,10 @@ Ended run_once(const RunOptions& given) {
     kept.csv = options.csv;
     kept.cycles = counts_cycles(options);
     kept.rest = rest_of(options, loaded, request.steps, request.probes.size());
-    kept.see = [&](const Frame& frame, const State* state) {
-      if (view) view->show(frame);
-      feed->show(frame, state);
-    };
+    kept.see = [&](const Frame& frame, const State* state) { feed->show(frame, state); };
     recorder.emplace(std::move(kept), loaded);
     feed.emplace(options.out, head, frame_style(scene), loaded.setup.plan.particles, options.engine);
-    if (options.view) view.emplace(options.out, loaded, request.steps, options.opens);
+    if (options.view) pages.all.push_back(std::make_unique<RunPage>(options.out, options.opens));
     request.read = [&](const std::vector<Curve>& of, uint64_t step, Values values) {
       feed->read(of, step, values);
     };
@@ -218,7 +224,8 @@ Ended run_once(const RunOptions& given) {
     recorder->finish(trace, summary, state);
     if (!recorder->trouble().empty()) trouble = recorder->trouble();
   }
-  if (view) view->end();
+  if (options.view) pages.all.back()->report();
+  if (feed) pages.ended_run |= feed->has_ended();
   feed.reset();
   if (unfinished)
     fmt::print(stderr, "interrupted{}\n",
@@ -236,7 +243,12 @@ int run(RunOptions options) {
   options.check_kept();
   static_cast<void>(options.formats());
   const std::vector<StageName> names = stages_of(options.input.scene);
-  if (names.empty()) return run_once(options).code;
+  Pages pages;
+  if (names.empty()) {
+    const int code = run_once(options, pages).code;
+    pages.wait();
+    return code;
+  }
   if (options.out.empty())
     throw InputError(
         "a scene of stages needs --out DIR, where each keeps the state that the next one begins with");
@@ -247,8 +259,8 @@ int run(RunOptions options) {
   StageRun request{
       options.input.scene,    names,         options.input.stage, options.input.from, options.out,
       options.engines.resume, options.force, options.answer.json};
-  bool opens = true;  // one page is enough
-  return run_stages(request, [&](const StageDirectory& stage) {
+  bool opens = true;  // one tab is enough
+  const int code = run_stages(request, [&](const StageDirectory& stage) {
     RunOptions one = options;
     one.in_stages = true;
     one.opens = std::exchange(opens, false);
@@ -257,9 +269,11 @@ int run(RunOptions options) {
     one.out = stage.path;
     one.engines.resume = stage.resume;
     one.force = stage.force;
-    const Ended ended = run_once(one);
+    const Ended ended = run_once(one, pages);
     return std::pair{ended.code, ended.whole};
   });
+  pages.wait();
+  return code;
 }
 
 }  // namespace
@@ -314,8 +328,8 @@ void add_run(Command& app, int& exit_code) {
   command.flag("--no-watch", options->no_watch,
                "do not look for what makes a run wrong (docs/reference/failures.md)");
   command.flag("--view", options->view,
-               "show the run while it goes: DIR/report.html follows the frames, and opens in a browser "
-               "where there is a display; keeps 40 frames unless scene or --frame-every say otherwise");
+               "show the run while it goes, as 'cuboct view' does, in a browser where there is a display; "
+               "keeps 40 frames unless scene or --frame-every say otherwise, and leaves DIR/report.html");
   command.flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
   const Option quiet = command.flag("-q,--quiet", options->quiet,
                                     "nothing on stderr but errors: no table of the run as it goes");

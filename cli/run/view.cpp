@@ -2,23 +2,23 @@
 #include "cli/run/view.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <filesystem>
-#include <utility>
+#include <vector>
 
 #include "cli/run/report.h"
-#include "cli/run/report_pictures.h"
+#include "model/base/error.h"
+#include "model/base/interrupt.h"
 #include "model/base/output.h"
-#include "model/base/process.h"
 #include "model/base/text.h"
 
 namespace cuboct {
 namespace {
 
-constexpr int kRefresh = 2;  // s
+constexpr int kLook = 20;  // ms
 
 bool has_display() {
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
@@ -33,64 +33,37 @@ bool open_in_browser(const std::string& address) {
          Process("setsid", {"--fork", "xdg-open", address}, false, {"/dev/null", "/dev/null"}).wait() == 0;
 }
 
-template <typename Work>
-void LiveView::attempt(Work work) {
-  if (failed_) return;
+RunPage::RunPage(const std::string& directory, bool opens) : directory_(directory) {
+  const std::string address = scratch_.path("address"), errors = scratch_.path("errors");
   try {
-    work();
+    std::vector<std::string> words{"view", directory, "--while-run"};
+    if (!opens) words.emplace_back("--no-open");
+    process_.emplace(beside("cuboct"), words, false, Streams{address, errors});
+    // It listens once it tells its address: the first frame is not to come before.
+    std::string told;
+    while (told.empty() && !process_->ended()) {
+      told = read_text(address);
+      poll(nullptr, 0, kLook);
+    }
+    if (told.empty()) throw InputError(read_text(errors));
+    fmt::print(stderr, "view: {}", block_text(told));
   } catch (const std::exception& error) {
-    failed_ = true;
-    fmt::print(stderr, "warning: --view shows no more: {}; the run goes on\n", line_text(error.what()));
+    process_.reset();
+    fmt::print(stderr, "warning: --view shows no page: {}; the run goes on\n", line_text(error.what()));
   }
 }
 
-LiveView::LiveView(std::string directory, const Loaded& loaded, uint64_t steps, bool open)
-    : path_(directory + "/report.html"),
-      directory_(std::move(directory)),
-      title_(loaded.scene.title.empty() ? loaded.scene.path : loaded.scene.title),
-      loaded_(loaded),
-      steps_(steps) {
-  attempt([&] {
-    write("<p class=\"lead\">The run begins.</p>\n", kRefresh);
-    if (open) open_page();
-  });
+void RunPage::report() const {
+  try {
+    write_report(directory_, directory_ + "/report.html");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "warning: --view leaves no report: {}\n", line_text(error.what()));
+  }
 }
 
-void LiveView::write(const std::string& body, int refresh) {
-  write_text(path_, page_head(title_, refresh) + body + "</body>\n</html>\n");
-}
-
-void LiveView::open_page() const {
-  const std::string page = std::filesystem::absolute(path_).lexically_normal().string();
-  if (!open_in_browser(page)) fmt::print(stderr, "view: {}\n", line_text(page));
-}
-
-void LiveView::show(const Frame& frame) {
-  if (Clock::now() < next_) return;
-  attempt([&] {
-    const auto begin = Clock::now();
-    const std::string label = fmt::format("step {} of {}    t = {:.4g} s", frame.step, steps_, frame.time);
-    const std::string png = draw_frames(loaded_.scene, {label}, [&](size_t) { return frame; });
-    write(
-        fmt::format("<p class=\"lead\">Step {} of {}; the page follows the run.</p>\n", frame.step, steps_) +
-            page_picture(png),
-        kRefresh);
-    next_ = Clock::now() + std::max<Clock::duration>(9 * (Clock::now() - begin), std::chrono::seconds(1));
-  });
-}
-
-void LiveView::end() {
-  attempt([&] {
-    write_report(directory_, path_);
-    ended_ = true;
-  });
-}
-
-// A page that nobody writes any more must not ask for news for ever.
-LiveView::~LiveView() {
-  if (ended_) return;
-  failed_ = false;
-  attempt([&] { write("<p class=\"lead\">The run is over, and has no report.</p>\n", 0); });
+void RunPage::wait(bool by_page) {
+  if (by_page) forget_interrupt();
+  if (process_) process_->wait();
 }
 
 }  // namespace cuboct

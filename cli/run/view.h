@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// `cuboct run --view`: DIR/report.html shows the run while it goes, and is its report in the end.
+// `cuboct run --view`: the page of `cuboct view`, of this run.
 #pragma once
 
-#include <chrono>
+#include <optional>
 #include <string>
 
-#include "cli/command.h"
-#include "model/trace/frame.h"
+#include "model/base/process.h"
 
 namespace cuboct {
 
@@ -14,32 +13,24 @@ namespace cuboct {
 // browser.
 bool open_in_browser(const std::string& address);
 
-// Nothing here ends a run: what goes wrong is told once on stderr, and the run goes on without a page.
-class LiveView {
+// A `cuboct view` that follows the run in a directory. Nothing here ends a run: what goes wrong is told once
+// on stderr, and the run goes on without a page.
+class RunPage {
  public:
-  // Writes the page. `open`: in a browser, where there is a display; else the page's path is told.
-  LiveView(std::string directory, const Loaded& loaded, uint64_t steps, bool open);
-  ~LiveView();  // of a run that failed
-  LiveView(const LiveView&) = delete;
-  LiveView& operator=(const LiveView&) = delete;
+  // The directory is locked, and has no frame yet. `opens`: in a browser, where there is a display. The
+  // address is told on stderr.
+  RunPage(const std::string& directory, bool opens);
 
-  // The newest frame. Drawing takes a tenth of the run's time at most: frames that come sooner are left out.
-  void show(const Frame& frame);
-  // Once the run's directory is whole.
-  void end();
+  // Once the directory is whole: its report, DIR/report.html.
+  void report() const;
+  // Once the directory is let go: until Ctrl-C, if somebody has opened the page. `by_page`: the run was
+  // interrupted by it, and not by Ctrl-C.
+  void wait(bool by_page);
 
  private:
-  using Clock = std::chrono::steady_clock;
-  template <typename Work>
-  void attempt(Work work);
-  void write(const std::string& body, int refresh);
-  void open_page() const;
-
-  std::string path_, directory_, title_;
-  const Loaded& loaded_;
-  uint64_t steps_;
-  bool failed_ = false, ended_ = false;
-  Clock::time_point next_ = Clock::now();
+  Scratch scratch_;
+  std::string directory_;
+  std::optional<Process> process_;
 };
 
 }  // namespace cuboct

@@ -29,7 +29,7 @@ struct ViewOptions {
   std::string what, save, with;
   uint64_t every = 1, particles = std::numeric_limits<uint32_t>::max(), limit = 100;
   uint32_t port = 0;
-  bool no_open = false, limit_given = false, port_given = false, particles_given = false;
+  bool no_open = false, while_run = false, limit_given = false, port_given = false, particles_given = false;
   // Of a run that is started.
   std::string arch, engine, out, steps, frame_every;
   bool force = false, cycles = false;
@@ -125,13 +125,17 @@ int view(const ViewOptions& options) {
       throw InputError(
           fmt::format("--save is of a run that is over, and {} is no directory", options.what),
           fmt::format("cuboct run {} --out DIR, then cuboct view DIR --save {}", options.what, options.save));
-    for (const auto& [given, option] :
-         {std::pair{options.port_given, "--port"}, {options.no_open, "--no-open"}})
+    for (const auto& [given, option] : {std::pair{options.port_given, "--port"},
+                                        {options.no_open, "--no-open"},
+                                        {options.while_run, "--while-run"}})
       if (given)
         throw InputError(fmt::format("{} is of a page that is served, and --save serves none", option));
     save(options);
     return 0;
   }
+  if (options.while_run && (!directory || !is_locked(options.what) || !options.with.empty()))
+    throw InputError(fmt::format("--while-run is of a run that goes, and {} holds none", options.what),
+                     "without it the page stays until Ctrl-C");
   if (options.limit_given) throw InputError("--limit is of a saved page: it goes with --save FILE.html");
   WatchAsked asked{options.what,
                    options.every,
@@ -139,6 +143,7 @@ int view(const ViewOptions& options) {
                    static_cast<uint16_t>(options.port),
                    options.particles_given,
                    !options.no_open,
+                   options.while_run,
                    options.answer};
   if (!options.with.empty()) return watch_two(asked, options.with);
   if (directory) return watch_directory(asked);
@@ -193,6 +198,8 @@ void add_view(Command& app, int& exit_code) {
       .given(options->port_given)
       .type_name("N");
   command.flag("--no-open", options->no_open, "print the address, and open no browser");
+  command.flag("--while-run", options->while_run,
+               "of a DIR: end with its run, unless somebody has opened the page");
   command.option("--arch", options->arch, "of a SCENE: arch file (TOML); default: the defaults")
       .type_name("FILE");
   command.option("--engine", options->engine, "of a SCENE: the engine of its run, as of 'cuboct run'")

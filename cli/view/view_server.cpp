@@ -58,7 +58,7 @@ std::shared_ptr<ViewSource> ViewServer::source() const {
 
 HttpAnswer ViewServer::answer(const HttpAsked& asked) { return answer_of(*source(), asked); }
 
-HttpAnswer ViewServer::answer_of(ViewSource& from, const HttpAsked& asked) const {
+HttpAnswer ViewServer::answer_of(ViewSource& from, const HttpAsked& asked) {
   ViewSource* const now = &from;
   constexpr std::string_view kWith = "with/";
   if (asked.path.starts_with(kWith)) {
@@ -73,7 +73,10 @@ HttpAnswer ViewServer::answer_of(ViewSource& from, const HttpAsked& asked) const
                : HttpAnswer{};
   }
   if (asked.post) return {405, {}, nullptr};
-  if (asked.path.empty()) return {200, "text/html; charset=utf-8", page_};
+  if (asked.path.empty()) {
+    was_opened_ = true;
+    return {200, "text/html; charset=utf-8", page_};
+  }
   if (asked.path == "story") return json_answer(now->story());
   if (asked.path == "news")
     return json_answer(now->news(asked.number("frames").value_or(0), asked.number("lines").value_or(0)));

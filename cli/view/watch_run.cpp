@@ -32,24 +32,25 @@ constexpr int kLook = 100;  // ms
 
 // Of what a program is told as an argument all users of the machine can read: the browser is given a file
 // that sends it to the address.
-void open_apart(const std::string& address, const Scratch& scratch) {
+bool open_apart(const std::string& address, const Scratch& scratch) {
   const std::string path = scratch.path("view.html");
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-  if (file < 0) return;
+  if (file < 0) return false;
   const std::string text = fmt::format(
       "<!DOCTYPE html>\n<title>cuboct view</title>\n<meta name=\"referrer\" content=\"no-referrer\">\n"
       "<meta http-equiv=\"refresh\" content=\"0; url={0}\">\n<a href=\"{0}\">cuboct view</a>\n",
       address);
   const bool whole = write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
   close(file);
-  if (whole) open_in_browser(path);
+  return whole && open_in_browser(path);
 }
 
-void tell(const WatchAsked& asked, const ViewServer& server, const Scratch& scratch) {
+// Whether a browser has been opened.
+bool tell(const WatchAsked& asked, const ViewServer& server, const Scratch& scratch) {
   asked.answer.say("{}\n", server.address());
   asked.answer.close(json_object({{"address", json(server.address())}}));
   std::fflush(stdout);  // who reads a pipe is to have it now
-  if (asked.opens) open_apart(server.address(), scratch);
+  return asked.opens && open_apart(server.address(), scratch);
 }
 
 void wait_for_interrupt() {
@@ -113,10 +114,11 @@ int watch_directory(const WatchAsked& asked) {
   refuse_part(asked, asked.directory);
   auto live = std::make_shared<LiveRun>(asked.directory, "");
   ViewServer server(asked.port, live);
-  tell(asked, server, scratch);
+  const bool opened = tell(asked, server, scratch);
   // A run that was killed leaves nothing, and may be begun anew.
   while (live && !interrupted()) {
     while (!interrupted() && is_locked(asked.directory)) poll(nullptr, 0, kLook);
+    if (asked.while_run && !opened && !server.was_opened()) return 0;
     if (interrupted() || show_what_is_left(asked, server, live)) break;
     while (!interrupted() && !is_locked(asked.directory)) poll(nullptr, 0, kLook);
   }

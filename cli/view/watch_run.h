@@ -14,8 +14,9 @@ struct WatchAsked {
   std::string directory;              // of the run
   uint64_t every = 1, particles = 1;  // StoredRun
   uint16_t port = 0;
-  bool part = false;  // `particles` was asked for
-  bool opens = true;  // in a browser, where there is a display
+  bool part = false;       // `particles` was asked for
+  bool opens = true;       // in a browser, where there is a display
+  bool while_run = false;  // ends with the run, unless somebody has opened the page
   Answer answer;
 };
 

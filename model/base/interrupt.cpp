@@ -48,6 +48,8 @@ void catch_interrupts() {
 
 bool interrupted() { return asked_to_stop != 0; }
 
+void forget_interrupt() { asked_to_stop = 0; }
+
 CatchInterrupt::CatchInterrupt() {
   const std::lock_guard lock(guard);
   if (catching++ > 0) return;

@@ -8,6 +8,8 @@ namespace cuboct {
 
 void catch_interrupts();
 bool interrupted();
+// False again: who asks for it has ended the run, and waits for something else.
+void forget_interrupt();
 
 // Within a program whose handlers are its own, such as Python: while any of these lives Ctrl-C alone is
 // caught, however often it comes, and nothing ends the program. Afterwards the handler of before is back, and

@@ -162,6 +162,12 @@ int Process::wait(const std::function<bool()>& begun, const std::function<bool()
   return exit_code(status);
 }
 
+bool Process::ended() const {
+  siginfo_t found{};
+  return waitid(P_PID, static_cast<id_t>(pid_), &found, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         found.si_pid == pid_;
+}
+
 int Process::finish() {
   int status = 0;
   while (waitpid(pid_, &status, 0) < 0)
