@@ -2,6 +2,7 @@
 // The machine of a saved page beside the cycles of its trace: numbers, names, arrows, pixels, a picked node.
 import assert from "node:assert/strict";
 import {drawn, show} from "./browser.mjs";
+import {a_film_has_each_cycle} from "./film_checks.mjs";
 
 const kColours = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#999999"];
 const kKinds = ["exchange_x", "exchange_y", "exchange_z", "force", "update", "migrate_x", "migrate_y", "migrate_z"];
@@ -226,6 +227,7 @@ export async function the_machine_is_that_of_the_trace(page, trace, pictures) {
   const ends = machine.cycles.map((nodes) => Math.max(...nodes.flat().map(([, last]) => last)) + 1);
   assert.deepEqual(per_step.value, ends.map((end, k) => end - (k > 0 ? ends[k - 1] : 0)));
   await cycles_play(page);
+  await a_film_has_each_cycle(page);
   if (pictures) {
     await page.evaluate(([node, cycle]) => { cuboct.page.machine.choose(node); cuboct.page.machine.cycle = cycle; cuboct.page.machine.colour(); }, [node, 40]);
     await page.screenshot({path: `${pictures}/machine_1280.png`});

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import {readFileSync} from "node:fs";
 import {pathToFileURL} from "node:url";
 import {choose, drawn, launch, open, show} from "./browser.mjs";
+import {a_film_has_each_frame} from "./film_checks.mjs";
 import {the_machine_fits, the_machine_is_that_of_the_trace} from "./machine_checks.mjs";
 
 const [path, numbers, chromium, study_web, pictures] = process.argv.slice(2);
@@ -185,6 +186,7 @@ try {
       await a_part_stands_for_the_whole(page);
       await a_click_picks(page);
       await time_goes_both_ways(page);
+      console.log(`${await a_film_has_each_frame(page, context, trace.frames.length)} pictures of a film`);
       if (trace.machine) console.log(`${await the_machine_is_that_of_the_trace(page, trace, pictures)} numbers of the machine are those of the trace`);
     }
     assert.equal(await page.isVisible("#live"), false);

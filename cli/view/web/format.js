@@ -8,6 +8,15 @@ export function element(name, text, kind) {
   return made;
 }
 
+// Hands a file to the reader.
+export function save(blob, name) {
+  const link = element("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+
 export const by_id = (id) => document.getElementById(id);
 
 // As many significant digits as asked for; "–" where there is no number.

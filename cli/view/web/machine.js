@@ -173,19 +173,31 @@ export class Machine {
     by_id("timeline").replaceChildren(...(this.spans ? [timeline_of(this)] : []));
   }
 
-  // Cycle by cycle, or so many at a time that a step takes ten seconds.
+  // Whether the picture is of a cycle.
+  plays_cycles() { return this.page.nodes_shown() && Boolean(this.spans) && this.choice().key === "phase"; }
+  // From the one that is shown, or from the first where that is the last: cycle by cycle, or so many at a time that a step takes
+  // ten seconds.
+  *cycles_to_play() {
+    const last = this.spans.length - 1, by = Math.max(1, Math.ceil(this.spans.length / kPasses));
+    let cycle = this.cycle < last ? this.cycle : 0;
+    for (; cycle < last; cycle = Math.min(last, this.cycle + by)) yield cycle;
+    yield last;
+  }
+  show_cycle(cycle) {
+    this.cycle = cycle;
+    this.colour();
+  }
   play() {
     this.playing = !this.playing;
     by_id("play-cycles").textContent = this.playing ? "stop" : "play cycles";
-    const by = Math.max(1, Math.ceil(this.spans.length / kPasses));
-    const next = () => {
+    if (!this.playing) return;
+    const cycles = this.cycles_to_play(), next = () => {
       if (!this.playing) return;
-      this.cycle = Math.min(this.spans.length - 1, this.cycle + by);
-      this.colour();
-      if (this.cycle === this.spans.length - 1) this.play();
-      else setTimeout(next, 1000 / kRate);
+      const {value, done} = cycles.next();
+      if (done) return this.play();
+      this.show_cycle(value);
+      setTimeout(next, 1000 / kRate);
     };
-    if (this.playing && this.cycle >= this.spans.length - 1) this.cycle = 0;
-    if (this.playing) next();
+    next();
   }
 }

@@ -5,7 +5,8 @@ import {SavedFrames, ServedFrames, array_of} from "./blocks.js";
 import {tell_particle} from "./chosen.js";
 import {gradient_of, kTypes, range_of, table_of, table_of_types} from "./colours.js";
 import {charts_of, grow} from "./curves.js";
-import {by_id, element, number, with_unit} from "./format.js";
+import {Film} from "./film.js";
+import {by_id, element, number, save, with_unit} from "./format.js";
 import {follow} from "./live.js";
 import {Machine} from "./machine.js";
 import {Stage} from "./stage.js";
@@ -54,6 +55,7 @@ class Page {
     by_id("what-part").hidden = !this.machine;
     this.machine?.begin();
     this.beside?.begin();
+    this.film = new Film(this);
     this.listen();
   }
   lead() {
@@ -93,7 +95,7 @@ class Page {
     on("hold", "change", () => { this.held = by_id("hold").checked ? this.range : null; return this.recolour(); });
     on("what", "change", () => this.swap());
     for (const id of ["cut-axis", "cut-at", "cut-turn"]) on(id, "input", () => this.cut());
-    document.querySelectorAll("#looks button").forEach((button) =>
+    document.querySelectorAll("#looks [data-look]").forEach((button) =>
       button.addEventListener("click", () => this.stages().forEach((stage) => stage.look(button.dataset.look))));
     on("picture", "click", async () => save(await this.stage.picture(), `frame_${this.story.frames[this.frame].step}.png`));
     this.picks(by_id("canvas"), (x, y) => (this.nodes_shown() ? this.machine.choose(this.stage.pick_node(x, y)) : this.choose(this.stage.pick(x, y))));
@@ -273,14 +275,6 @@ class Page {
     if (this.playing && this.frame >= this.story.frames.length - 1 && !this.story.live) this.attempt(async () => { await this.show(0); await next(); });
     else if (this.playing) this.attempt(next);
   }
-}
-
-function save(blob, name) {
-  const link = element("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
 
 async function start() {
