@@ -134,6 +134,7 @@ py::dict dict_of(const WholeRun& run) {
   out["stopped"] = trace.stop ? py::cast(trace.stop->text) : py::none();
   out["reached"] = trace.reached ? py::cast(reached_text(trace)) : py::none();
   out["summary"] = run.summary;
+  out["_shown"] = run.shown;
   out["_matter"] = Matter{run.scene, stands_in_box(trace), velocities_late(trace, run.dt)};
   return out;
 }
@@ -294,6 +295,8 @@ PYBIND11_MODULE(_cuboct, module) {
         return names;
       });
 
+  py::class_<Shown, std::shared_ptr<Shown>>(module, "Shown").def("page", &page_of, Unlocked());
+
   py::class_<Simulation>(module, "Simulation")
       .def(py::init([](const Sources& sources, const std::string& engine, const py::dict& options,
                        std::optional<uint64_t> probe_every, bool anyway) {
@@ -304,6 +307,7 @@ PYBIND11_MODULE(_cuboct, module) {
       .def("step", &Simulation::step, Unlocked())
       .def("run", &Simulation::run, Unlocked())
       .def("leave", &Simulation::leave, Unlocked())
+      .def("shown", &Simulation::shown, Unlocked())
       .def("fields",
            [](Simulation& simulation) {
              Fields fields;

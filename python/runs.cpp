@@ -90,8 +90,11 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   request.frames = asked.keep_every ? every_so_often(*asked.keep_every, request.steps)
                                     : std::vector<uint64_t>{request.steps};
   std::optional<RunState> last;
+  result.shown =
+      std::make_shared<Shown>(Shown{sources, asked.engine, asked.options.is_real(asked.engine), {}, {}});
   request.keep = [&](const RunState& frame) {
     if (!asked.leave.empty()) last = frame;
+    result.shown->states.push_back(frame);
     if (const State* state = std::get_if<State>(&frame)) {
       result.kept.push_back({state->step, to_real(*state, plan.rule, plan.lattice, plan.origin), {}});
     } else {
@@ -117,6 +120,7 @@ WholeRun run(const Sources& sources, const RunAsked& given) {
   if (last && !result.recorded.trace.stop)
     leave_state(asked.leave, head_of(loaded, asked.options.is_real(asked.engine), false), *last,
                 result.recorded.trace);
+  result.shown->trace = result.recorded.trace;
   result.summary = summary.json();
   result.scene = std::make_shared<const Scene>(std::move(loaded.scene));
   return result;

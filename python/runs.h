@@ -10,6 +10,7 @@
 
 #include "cli/run/engine_options.h"
 #include "model/run/record.h"
+#include "python/page.h"
 #include "python/sources.h"
 
 namespace cuboct::python {
@@ -34,7 +35,8 @@ struct WholeRun {
   std::shared_ptr<const Scene> scene;
   Recorded recorded;  // without its frames
   std::vector<Kept> kept;
-  double dt = 0;        // s
+  double dt = 0;  // s
+  std::shared_ptr<Shown> shown;
   std::string summary;  // as `cuboct run --json` prints it
 };
 

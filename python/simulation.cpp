@@ -277,6 +277,32 @@ void Simulation::leave(const std::string& directory) {
   leave_state(directory, head, engine_->frame(false), rest);
 }
 
+// What was changed has another plan than the scene: its states are then shown in real numbers.
+Shown Simulation::shown() {
+  const std::lock_guard lock(mutex_);
+  Shown shown{sources_, changed_ ? "reference" : engine_name_, real_ || changed_, {}, {}};
+  RunState state = engine_->frame(false);
+  if (changed_ && std::holds_alternative<State>(state)) {
+    const Body& body = present();
+    state = RealFrame{now(), body.x, body.v, {}, {}};
+  }
+  Trace& trace = shown.trace;
+  trace.engine = engine_name_;
+  trace.plan_hash =
+      changed_ ? load_plan(sources_, false, "reference", true).setup.plan.hash : setup_.plan.hash;
+  trace.nodes = setup_.plan.nodes();
+  trace.steps_done = now();
+  trace.curves = meter_->curves();
+  // A trace of integers has hashes. That of step 0 is not known here, and no page shows it.
+  if (!shown.real) {
+    trace.hash_every = now() + 2;
+    if (now() > 0) trace.state_hash.push_back(0);
+    trace.state_hash.push_back(engine_->hash());
+  }
+  shown.states.push_back(std::move(state));
+  return shown;
+}
+
 Fields Simulation::fields() {
   const std::lock_guard lock(mutex_);
   auto* rounds = dynamic_cast<RoundsRun*>(engine_.get());
@@ -340,6 +366,7 @@ void Simulation::change(const std::string& call, const std::function<void(Rule&)
     of_call([&] { setup_ = going_on(changed, plan, state, scene_.body); });
   }
   first_step_ = now();
+  changed_ = true;
   scene_.rule = std::move(changed.rule);
   make_engine();
 }

@@ -17,6 +17,7 @@
 #include "model/analysis/meter.h"
 #include "model/analysis/strain.h"
 #include "model/run/engine.h"
+#include "python/page.h"
 #include "python/sources.h"
 
 namespace cuboct::python {
@@ -65,6 +66,9 @@ class Simulation {
   // PNG, of the present state.
   std::string picture(const std::string& field, double limit, int width);
 
+  // The present state and the curves so far.
+  Shown shown();
+
   // Never change.
   const std::string& engine() const { return engine_name_; }
   bool real() const { return real_; }
@@ -98,6 +102,7 @@ class Simulation {
   EngineOptions options_;
   Sources sources_;
   bool real_ = false, program_ = false;  // program_: the engine is one
+  bool changed_ = false;                 // from what the scene says
   bool text_ = false;                    // a rule that is text, in integers: states are shown in real numbers
   uint64_t first_step_ = 0;              // of the engine
   uint64_t probe_every_ = 0, energy_every_ = 0;

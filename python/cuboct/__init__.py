@@ -21,11 +21,12 @@ from ._particles import write_particles
 from ._run import Comparison, Frame, Run, crosscheck, explore, run
 from ._scene import Arch, Scene
 from ._simulation import Simulation
+from ._view import View
 
 __version__: str = _cuboct.version
 __all__ = [
-    "Arch", "Comparison", "Frame", "InputError", "Measured", "Run", "RunError", "Scene", "Simulation", "crosscheck", "explore", "measure",
-    "run", "set_program_directory", "write_particles",
+    "Arch", "Comparison", "Frame", "InputError", "Measured", "Run", "RunError", "Scene", "Simulation", "View", "crosscheck", "explore",
+    "measure", "run", "set_program_directory", "write_particles",
 ]  # fmt: skip
 
 

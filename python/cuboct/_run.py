@@ -18,7 +18,8 @@ from . import _cuboct
 from ._errors import InputError, RunError
 from ._measure import Frames, Measured, Size, _frames, _options
 from ._scene import ArchLike, SceneLike, sources
-from ._simulation import Start, _count, _given, _left_by
+from ._simulation import Start, _count, _Folder, _given, _left_by
+from ._view import View, _view
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,8 @@ class Run:
     summary: dict[str, Any]  # of `cuboct run --json`
     stages: dict[str, Run] = field(default_factory=dict)  # of a scene of stages the runs of all, by name; this is the last
     _matter: Any = field(default=None, repr=False, compare=False)
+    _shown: Any = field(default=None, repr=False, compare=False)
+    _folder: Any = field(default=None, repr=False, compare=False)  # with the state that it began with, for as long as it lives
 
     @property
     def positions(self) -> NDArray[np.float64]:
@@ -119,8 +122,18 @@ class Run:
             )
         )  # fmt: skip
 
+    def view(self, *, every: int | None = None, particles: int | None = None, limit: int = 20, height: int = 900) -> View:
+        """The run in 3D: a notebook shows it at the end of a cell (docs/user/view.md). Its frames are those of `frames`.
+
+        `every`: each so-manieth frame, and the last. `particles`: at most so many are shown, spread over the ids. `limit`: MB that the page
+        may have. `height`: pixels.
+        """
+        if self._shown is None:
+            raise InputError("a run that was pickled has no states to show")
+        return _view(self._shown, every, particles, limit, height)
+
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_matter": None}
+        return {**self.__dict__, "_matter": None, "_shown": None, "_folder": None}
 
     def __repr__(self) -> str:
         return f"<cuboct.Run of {self.steps} steps, {self.engine} engine, hash {self.hash}>"
@@ -192,7 +205,9 @@ def run(
     last = None if steps is None else _count(steps, "steps")
     every = None if frame_every is None else _count(frame_every, "frame_every")
     runs: dict[str, Run] = {}
-    with sources(scene, arch) as source, tempfile.TemporaryDirectory() as folder:
+    kept = _Folder()
+    folder = kept.name
+    with sources(scene, arch) as source:
         begin = _left_by(start, folder)
         names = _stages(source, stage, last)
         ended = None  # a stage whose `until` held in an earlier part
@@ -203,7 +218,7 @@ def run(
             found = _cuboct.run(source.at(name, begin), engine or "", options, last, every, bool(anyway), leave)
             found["frames"] = [Frame(**frame) for frame in found["frames"]]
             found["summary"] = json.loads(found["summary"])
-            result = runs[name] = Run(**found, stages=runs if name else {})
+            result = runs[name] = Run(**found, stages=runs if name else {}, _folder=kept if begin else None)
             if result.stopped is not None:
                 error = RunError(result.stopped, result.summary.get("advice", {}).get("value", ""), result.steps)
                 error.run = result

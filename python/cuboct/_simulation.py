@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from . import _cuboct
 from ._errors import InputError
 from ._scene import ArchLike, Scene, SceneLike, _tables, sources
+from ._view import View, _view
 
 Start = Union["Simulation", str, "os.PathLike[str]", None]
 
@@ -36,6 +37,14 @@ def _vector(value: Sequence[float], what: str) -> tuple[float, float, float]:
         return float(x), float(y), float(z)
     except (TypeError, ValueError):
         raise InputError(f"{what} has three components, as plain numbers, not {value!r}") from None
+
+
+class _Folder:
+    """A directory that goes with this object."""
+
+    def __init__(self) -> None:
+        self.name = tempfile.mkdtemp()
+        weakref.finalize(self, shutil.rmtree, self.name, ignore_errors=True)
 
 
 def _left_by(start: Start, folder: str) -> str:
@@ -96,11 +105,8 @@ class Simulation:
             devices=None if devices is None else list(devices), port=port, baud=baud,
         )  # fmt: skip
         every = None if probe_every is None else _count(probe_every, "probe_every")
-        folder = ""
-        if isinstance(start, Simulation):  # what it left has to last, as a program reads it with the first step
-            folder = tempfile.mkdtemp()
-            weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
-        begin = _left_by(start, folder)
+        self._folder = _Folder() if isinstance(start, Simulation) else None  # what it left has to last: programs and pages read it
+        begin = _left_by(start, self._folder.name if self._folder else "")
         tables = _tables(Scene, scene)
         with sources(tables, arch) as source:
             self._of = _cuboct.Simulation(source.at(stage or "", begin), engine or "", options, every, bool(anyway))
@@ -236,6 +242,14 @@ class Simulation:
         if not 400 <= _count(width, "width") <= 16384:
             raise InputError(f"width = {width}: from 400 to 16384 pixels")
         return self._of.picture(field, limit or 0.0, width)
+
+    def view(self, *, particles: int | None = None, limit: int = 20, height: int = 900) -> View:
+        """The present state in 3D, with the curves so far: a notebook shows it at the end of a cell (docs/user/view.md).
+
+        `particles`: at most so many are shown, spread over the ids. `limit`: MB that the page may have. `height`: pixels. After a
+        change of velocity or gravity places and velocities are doubles, without their bits.
+        """
+        return _view(self._of.shown(), None, particles, limit, height)
 
     def _repr_png_(self) -> bytes:
         return self.picture()
