@@ -229,26 +229,30 @@ void LiveRun::read_log() {
   log_read_ += static_cast<off_t>(whole + 1);
 }
 
-std::string LiveRun::story() {
+LiveRun::Seen LiveRun::seen(size_t frames, size_t lines) {
   const std::lock_guard lock(guard_);
   read_log();
-  Story story{head_.empty() ? "null" : head_, {}};
-  for (const Kept& frame : frames_) story.frames.push_back(frame.json);
-  story.lines = lines_;
+  const bool lost = state_ == "ended" && is_locked(directory_);  // the run goes on without us, or writes
+  Seen seen{head_, lost ? "lost" : state_, {}, {}};
+  for (size_t k = std::min(frames, frames_.size()); k < frames_.size(); ++k)
+    seen.frames.push_back(frames_[k].json);
+  for (size_t k = std::min(lines, lines_.size()); k < lines_.size(); ++k) seen.lines.push_back(lines_[k]);
+  return seen;
+}
+
+std::string LiveRun::story() {
+  Seen now = seen(0, 0);
+  Story story{now.head.empty() ? "null" : now.head, std::move(now.frames)};
+  story.lines = std::move(now.lines);
   story.live = story.may_end = true;
   return story.json();
 }
 
 std::string LiveRun::news(size_t frames, size_t lines) {
-  const std::lock_guard lock(guard_);
-  read_log();
-  const bool lost = state_ == "ended" && is_locked(directory_);  // the run goes on without us, or writes
-  std::vector<std::string> fresh, told;
-  for (size_t k = std::min(frames, frames_.size()); k < frames_.size(); ++k) fresh.push_back(frames_[k].json);
-  for (size_t k = std::min(lines, lines_.size()); k < lines_.size(); ++k) told.push_back(lines_[k]);
-  return json_object({{"frames", json_array(fresh)},
-                      {"lines", json(told)},
-                      {"state", json(lost ? std::string("lost") : state_)},
+  const Seen now = seen(frames, lines);
+  return json_object({{"frames", json_array(now.frames)},
+                      {"lines", json(now.lines)},
+                      {"state", json(now.state)},
                       {"whole", json(false)}});
 }
 

@@ -23,6 +23,12 @@ class LiveRun : public ViewSource {
   ~LiveRun() override;
 
   bool has_frames() const;
+  // What there is from that frame and line on.
+  struct Seen {
+    std::string head, state;  // head: empty before the first frame
+    std::vector<std::string> frames, lines;
+  };
+  Seen seen(size_t frames, size_t lines);
 
   std::string story() override;
   std::string news(size_t frames, size_t lines) override;

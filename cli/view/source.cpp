@@ -21,7 +21,8 @@ std::string Story::json() const {
        {"machine", machine},
        {"with", with},
        {"live", cuboct::json(live)},
-       {"may_end", cuboct::json(may_end)}});
+       {"may_end", cuboct::json(may_end)},
+       {"steered", steered}});
 }
 
 Bytes row_of(const std::string& block, size_t bytes, size_t row) {

@@ -24,6 +24,7 @@ struct Story {
   std::string machine = "null";                              // ViewMachine::json
   std::string with = "null";                                 // ComparedRuns::with
   bool live = false, may_end = false;                        // may_end: the run can be ended from the page
+  std::string steered = "null";                              // SteeredRun::steered
   std::string json() const;
 };
 
@@ -40,6 +41,9 @@ class ViewSource {
   // Of the machine: "nodes", "held" of frame k, "spans" of step k; null where there is none.
   virtual Bytes machine(const std::string&, size_t) { return nullptr; }
   virtual bool command(const std::string& word) = 0;  // false: nothing here follows it
+  // Another velocity, "1/0.5/0/0": of the constraint of that number, m/s. Nothing where none can change;
+  // empty, or why not.
+  virtual std::optional<std::string> steer(const std::string&) { return std::nullopt; }
   // The run that is compared with this one; null: none.
   virtual ViewSource* beside() { return nullptr; }
 };

@@ -15,6 +15,7 @@
 #include "cli/view/saved_page.h"
 #include "cli/view/watch_run.h"
 #include "hw/engine/engines.h"
+#include "hw/engine/scene_engine.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/json.h"
@@ -33,6 +34,7 @@ struct ViewOptions {
   // Of a run that is started.
   std::string arch, engine, out, steps, frame_every;
   bool force = false, cycles = false;
+  uint64_t steer = 0;  // parts
   Answer answer;
 };
 
@@ -100,6 +102,34 @@ std::vector<std::string> run_words(const ViewOptions& options, const std::string
   return words;
 }
 
+// A scene in parts; `asked` but for its directory.
+int steer(const ViewOptions& options, WatchAsked asked) {
+  if (options.out.empty())
+    throw InputError("--steer needs --out DIR, where the scene of stages lies that the page makes");
+  asked.directory = options.out;
+  const std::string engine = options.engine.empty() ? engine_for(read_scene(options.what)) : options.engine;
+  if (std::filesystem::exists(options.out + "/scene.toml") && !options.force)
+    throw InputError(fmt::format("{} holds a scene.toml", line_text(options.out)),
+                     "another --out keeps it; --force puts that of this run in its place");
+  const uint64_t steps = options.steps.empty() ? 0 : std::stoull(options.steps);
+  SteeredScene scene({.scene = options.what, .arch = options.arch}, engine, engine_row(engine).real,
+                     options.out, steps, options.steer);
+  std::vector<std::string> words{"run",
+                                 scene.path(),
+                                 "--out",
+                                 options.out,
+                                 "--engine",
+                                 engine,
+                                 "--frame-every",
+                                 options.frame_every.empty()
+                                     ? std::to_string(std::max<uint64_t>(1, scene.steps() / 40))
+                                     : options.frame_every};
+  if (!options.arch.empty()) words.insert(words.end(), {"--arch", options.arch});
+  if (options.force) words.emplace_back("--force");
+  if (options.cycles) words.emplace_back("--cycles");
+  return watch_steered(asked, scene, words);
+}
+
 int view(const ViewOptions& options) {
   if (!has_view_page())
     throw InputError("this cuboct was built without the page of a run: cli/view/web/node_modules was missing",
@@ -119,6 +149,7 @@ int view(const ViewOptions& options) {
     of_scene(!value->empty(), option);
   of_scene(options.force, "--force");
   of_scene(options.cycles, "--cycles");
+  of_scene(options.steer > 0, "--steer");
   check_with(options);
   if (!options.save.empty()) {
     if (!directory)
@@ -151,6 +182,7 @@ int view(const ViewOptions& options) {
     throw InputError(fmt::format("{} is a scene of stages, each with a directory of its own", options.what),
                      fmt::format("cuboct run {} --out DIR, and meanwhile cuboct view DIR/{}", options.what,
                                  stage_title(stages, 0)));
+  if (options.steer > 0) return steer(options, asked);
   std::optional<Scratch> scratch;
   asked.directory = options.out;
   if (options.out.empty()) asked.directory = scratch.emplace().path("run");
@@ -220,6 +252,12 @@ void add_view(Command& app, int& exit_code) {
                "of a SCENE: begin anew in a DIR whose run did not end, in its place");
   command.flag("--cycles", options->cycles,
                "of a SCENE: count the machine's cycles, for the page of the run that is over");
+  command
+      .option("--steer", options->steer,
+              "of a SCENE: in N parts, so that the page can change imposed velocities from the next part on; "
+              "DIR then holds the scene of stages that gives the same run again")
+      .range(uint64_t{2}, uint64_t{100})
+      .type_name("N");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = view(*options); });
 }

@@ -72,6 +72,13 @@ HttpAnswer ViewServer::answer_of(ViewSource& from, const HttpAsked& asked) {
                ? HttpAnswer{204, {}, std::make_shared<const std::string>()}
                : HttpAnswer{};
   }
+  constexpr std::string_view kVelocity = "velocity/";
+  if (asked.post && asked.path.starts_with(kVelocity)) {
+    const std::optional<std::string> wrong = now->steer(asked.path.substr(kVelocity.size()));
+    if (!wrong) return {};
+    const int status = wrong->empty() ? 204 : 400;
+    return {status, "text/plain; charset=utf-8", std::make_shared<const std::string>(*wrong)};
+  }
   if (asked.post) return {405, {}, nullptr};
   if (asked.path.empty()) {
     was_opened_ = true;

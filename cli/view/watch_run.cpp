@@ -12,9 +12,11 @@
 #include <system_error>
 #include <utility>
 
+#include "cli/run/outputs.h"
 #include "cli/run/view.h"
 #include "cli/view/compared_runs.h"
 #include "cli/view/live_run.h"
+#include "cli/view/steered_run.h"
 #include "cli/view/stored_run.h"
 #include "cli/view/view_server.h"
 #include "model/base/directory_lock.h"
@@ -158,6 +160,38 @@ int watch_run(const WatchAsked& asked, const std::vector<std::string>& words) {
   if (!asked.answer.json) fmt::print("{}", block_text(read_text(summary)));
   std::fflush(stdout);
   if (!interrupted()) show_what_is_left(asked, server, live);
+  wait_for_interrupt();
+  return 0;
+}
+
+int watch_steered(const WatchAsked& asked, SteeredScene& scene, const std::vector<std::string>& words) {
+  catch_interrupts();
+  refuse_part(asked, "one that is started");
+  make_directory(asked.directory);
+  const Scratch scratch;
+  auto all = std::make_shared<SteeredRun>(scene);
+  ViewServer server(asked.port, all);
+  bool told = false;
+  int code = 0;
+  while (code == 0 && !interrupted() && all->next()) {
+    const std::string summary = scratch.path("summary"), log = scratch.path(scene.stage() + ".log");
+    make_directory(scene.place());
+    auto live = std::make_shared<LiveRun>(scene.place(), log);
+    all->begin(live);
+    std::vector<std::string> of_part = words;
+    of_part.insert(of_part.end(), {"--stage", scene.stage()});
+    Process run(beside("cuboct"), of_part, false, {summary, log});
+    code = run.wait({}, [&] {
+      if (!told && live->has_frames()) tell(asked, server, scratch), told = true;
+      return false;
+    });
+    fmt::print(stderr, "{}", block_text(read_text(log)));
+    // A part with warnings goes on; one that did not come to its end does not.
+    if (code == 1 && !interrupted() && read_record(scene.place()).state == "finished") code = 0;
+    if (!told && !all->has_frames()) return code;
+    if (!told) tell(asked, server, scratch), told = true;
+  }
+  all->end();
   wait_for_interrupt();
   return 0;
 }

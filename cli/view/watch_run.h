@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/answer.h"
+#include "cli/view/steered_scene.h"
 
 namespace cuboct {
 
@@ -27,5 +28,7 @@ int watch_two(const WatchAsked& asked, const std::string& with);
 // Starts `cuboct run` with these words, which is to leave its run in the directory. The exit code is that of
 // the run, if it failed before its first step.
 int watch_run(const WatchAsked& asked, const std::vector<std::string>& words);
+// The same of a scene that is steered, part by part; `words` are to be followed by those of the stage.
+int watch_steered(const WatchAsked& asked, SteeredScene& scene, const std::vector<std::string>& words);
 
 }  // namespace cuboct

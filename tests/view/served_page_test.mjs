@@ -7,7 +7,8 @@ import {spawn} from "node:child_process";
 import {existsSync, readFileSync, rmSync} from "node:fs";
 import http from "node:http";
 import net from "node:net";
-import {choose, drawn, kPatience, launch, open, show} from "./browser.mjs";
+import {fileURLToPath} from "node:url";
+import {choose, drawn, kPatience, launch, open, show, too_wide} from "./browser.mjs";
 
 const [cuboct, run, numbers, scene, out, chromium, study_web, pictures] = process.argv.slice(2);
 const trace = JSON.parse(readFileSync(numbers, "utf8"));
@@ -216,6 +217,39 @@ async function a_run_of_another_process(browser) {
   assert.equal(await second.end(), 0);
 }
 
+// A velocity is changed in the page, and is in force from the next part on; steps are those of the whole run.
+async function a_steered_run(browser) {
+  rmSync(out, {recursive: true, force: true});
+  const coupon = fileURLToPath(new URL("../../scenes/coupon.toml", import.meta.url));
+  const server = await view(coupon, "--steer", "3", "--steps", "1500", "--frame-every", "50", "--out", out);
+  const {page, problems, context} = await open(browser, server.address.all, 1280, 900);
+  await page.click("#pause");
+  await until(page, () => document.getElementById("live").dataset.state === "paused");
+  const from = await page.evaluate(() => cuboct.page.steer.next), inputs = await page.$$("#steer input");
+  assert.equal(inputs.length, 3);
+  assert.equal(await inputs[0].inputValue(), "5");
+  await inputs[1].fill("1e9");
+  await page.click("#steer button");
+  await until(page, () => /an imposed velocity is/.test(document.getElementById("steer-told").textContent));
+  await inputs[1].fill("0"), await inputs[0].fill("-1");
+  await page.click("#steer button");
+  await until(page, (told) => document.getElementById("steer-told").textContent === told, `pulled: [-1, 0, 0] from step ${from} on.`);
+  assert.equal(await too_wide(page) <= 0, true);
+  await page.click("#continue");
+  await until(page, () => document.getElementById("live").dataset.state === "ended");
+  const steps = await page.evaluate(() => cuboct.story.frames.map(({step}) => step));
+  assert.ok(steps.every((step, k) => k === 0 || step > steps[k - 1]) && steps.at(-1) >= 1000, steps.join());
+  const curves = await page.evaluate(() => cuboct.story.curves.map(({step}) => step.at(-1)));
+  assert.ok(curves.every((last) => last >= 1000 && last <= 1500), curves.join());
+  await page.waitForSelector("#steer-now:has-text('the last')");
+  assert.ok(readFileSync(out + "/scene.toml", "utf8").includes('velocity = "[-1, 0, 0] m/s"'));
+  if (pictures) await page.screenshot({path: `${pictures}/steered.png`});
+  assert.deepEqual(problems.filter((text) => !/400 \(Bad Request\)/.test(text)), []);
+  await context.close();
+  assert.equal(await server.end(), 0);
+  return steps.length;
+}
+
 await the_server_alone();
 if (chromium !== "-") {
   const browser = await launch(chromium, study_web);
@@ -223,6 +257,7 @@ if (chromium !== "-") {
     console.log(`${await a_stored_run(browser)} particles of a stored run are those of its trace`);
     console.log(`${await a_live_run(browser)} frames of a live run`);
     await a_run_of_another_process(browser);
+    console.log(`${await a_steered_run(browser)} frames of a steered run`);
   } finally {
     await browser.close();
   }

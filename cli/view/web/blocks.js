@@ -76,6 +76,11 @@ export class ServedFrames {
   async news(frames, lines) {
     return (await this.ask(`news?frames=${frames}&lines=${lines}`)).json();
   }
+  // Why not; empty: it is taken.
+  async steer(which, velocity) {
+    const answer = await fetch(`velocity/${[which, ...velocity].join("/")}`, {method: "POST", cache: "no-store"});
+    return answer.status === 204 ? "" : (await answer.text()) || `refused (${answer.status})`;
+  }
   async command(word) {
     return fetch("command/" + word, {method: "POST", cache: "no-store"});
   }

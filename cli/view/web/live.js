@@ -2,6 +2,7 @@
 // A run while it goes: what is new is asked for again and again, and the newest frame shown. A page that is slow skips frames.
 import {grow} from "./curves.js";
 import {by_id} from "./format.js";
+import {settle} from "./steer.js";
 
 const kEvery = 200;   // ms between questions
 const kAway = 1000;   // ms, where the server did not answer
@@ -31,7 +32,9 @@ export function follow(page, source) {
     let wait = kEvery;
     try {
       const news = await source.news(story.frames.length, story.lines.length);
+      settle(news.frames, story.head.dt);
       story.frames.push(...news.frames);
+      if (news.steered) page.steer.tell(news.steered);
       story.lines.push(...news.lines);
       if (news.lines.length) page.tell_lists();
       if (news.frames.length) {

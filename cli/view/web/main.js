@@ -10,6 +10,7 @@ import {by_id, element, number, save, with_unit} from "./format.js";
 import {follow} from "./live.js";
 import {Machine} from "./machine.js";
 import {Stage} from "./stage.js";
+import {Steer, settle} from "./steer.js";
 
 const embedded = JSON.parse(by_id("story").textContent);
 const source = embedded.served ? new ServedFrames(embedded) : new SavedFrames(embedded);
@@ -50,7 +51,9 @@ class Page {
     by_id("colour").value = String(Math.max(0, first));
     for (const axis of ["", "x", "y", "z"]) by_id("cut-axis").append(new Option(axis || "no cut", axis));
     this.tell_lists();
+    settle(this.story.frames, head.dt);
     if (this.story.live) grow(this.story.curves, this.story.frames);
+    if (this.story.steered) this.steer = new Steer(this, source), this.steer.begin(this.story.steered);
     this.tell_curves();
     by_id("what-part").hidden = !this.machine;
     this.machine?.begin();
