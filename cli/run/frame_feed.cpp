@@ -18,7 +18,7 @@
 namespace cuboct {
 namespace {
 
-constexpr int kShare = 20;                // of the run's time, one part
+constexpr int kShare = 25;                // of the run's time, one part
 constexpr timeval kLong{2, 0};            // a page that takes nothing for so long is left
 constexpr int kLook = 100;                // ms
 constexpr std::chrono::seconds kAway{2};  // until a page that could not be shown a frame is tried again
@@ -155,7 +155,7 @@ void FrameFeed::show(const Frame& frame, const State* state) {
   if (!paused_ && Clock::now() < next_) return;
   const auto began = Clock::now();
   const auto spent = [&] { return (kShare - 1) * (Clock::now() - began); };
-  // What a page that is stuck costs is a twentieth, too.
+  // What a page that is stuck costs is a twenty-fifth, too.
   const auto give_up = [&] {
     if (socket_ >= 0) next_ = Clock::now() + std::max<Clock::duration>(spent(), kAway);
     leave();

@@ -49,8 +49,8 @@ class FrameFeed {
   FrameFeed(const FrameFeed&) = delete;
   FrameFeed& operator=(const FrameFeed&) = delete;
 
-  // Takes a twentieth of the run's time at most: frames that come sooner are left out, but for those that a
-  // page waits for one by one. Without a page, a system call.
+  // Takes a twenty-fifth of the run's time at most: frames that come sooner are left out, but for those that
+  // a page waits for one by one. Without a page, a system call.
   void show(const Frame& frame, const State* state);
   // Goes with the next frame that is shown.
   void read(const std::vector<Curve>& of, uint64_t step, Values values);

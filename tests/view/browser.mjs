@@ -40,8 +40,10 @@ export async function choose(page, place) {
 
 // What is drawn, of the canvas' pixels from the bottom: {width, height, data}, and where particles stand in them.
 export const drawn = (page, ids = []) => page.evaluate((ids) => {
-  const {stage} = cuboct.page, gl = stage.renderer.getContext(), {width, height} = stage.renderer.domElement;
+  const {stage} = cuboct.page, gl = stage.renderer.getContext();
+  if (!stage.held) stage.moving = false;  // a picture that was turned just now may be coarse
   stage.draw_now();
+  const {width, height} = stage.renderer.domElement;
   const data = new Uint8Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
   const at = ids.map((id) => {

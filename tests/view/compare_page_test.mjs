@@ -83,8 +83,8 @@ async function numbers_are_those_of_both(page) {
 
 const cameras = (page) => page.evaluate(() => cuboct.page.stages().map(({camera}) => [...camera.position.toArray(), ...camera.quaternion.toArray()]));
 const inked = (page) => page.evaluate(() => cuboct.page.stages().map((stage) => {
+  stage.draw_whole();  // one that was turned just now may be coarse
   const gl = stage.renderer.getContext(), {width, height} = stage.renderer.domElement, data = new Uint8Array(4 * width * height);
-  stage.draw_now();
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
   let count = 0;
   for (let k = 0; k < data.length; k += 4) if (data[k] < 250 || data[k + 1] < 250 || data[k + 2] < 250) ++count;

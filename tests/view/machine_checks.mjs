@@ -123,9 +123,11 @@ async function pixels(page, trace) {
     await page.fill("#at-cycle", String(cycle));
     await page.waitForFunction((cycle) => cuboct.page.machine.cycle === cycle, cycle);
     const seen = await page.evaluate(() => {
-      const {stage} = cuboct.page, {nodes} = stage, gl = stage.renderer.getContext(), {width, height, clientWidth} = stage.renderer.domElement;
+      const {stage} = cuboct.page, {nodes} = stage, gl = stage.renderer.getContext();
       if (nodes.shown) nodes.shown.visible = false;  // arrows go over boxes
+      stage.moving = false;
       stage.draw_now();
+      const {width, height, clientWidth} = stage.renderer.domElement;
       const data = new Uint8Array(4 * width * height), found = [];
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
       for (let n = 0; n < nodes.count; ++n) {

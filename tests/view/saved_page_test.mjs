@@ -140,6 +140,31 @@ async function a_part_stands_for_the_whole(page) {
   assert.equal((await drawn(page)).inked, whole);
 }
 
+// Where the least part is slow, fewer pixels are drawn; at rest all are.
+async function a_slow_picture_is_coarse(page) {
+  const [whole, coarse, again, rest] = await page.evaluate(() => {
+    const {stage} = cuboct.page, wide = () => (stage.draw_now(), stage.renderer.domElement.width), learn = (took, times) => {
+      for (let k = 0; k < 3 * times; ++k) stage.learn(took);
+    }, whole = wide();
+    Object.assign(stage, {moving: true, held: true, last: 0, share: 1, times: []});
+    learn(100, 20);
+    const learnt = stage.learn;
+    stage.learn = () => {};
+    const coarse = wide();
+    stage.learn = learnt;
+    learn(5, 20);
+    stage.learn = () => {};
+    const again = wide();
+    stage.held = stage.moving = false;
+    stage.sharp = 0.5;
+    const rest = wide();
+    stage.sharp = 1;
+    delete stage.learn;
+    return [whole, coarse, again, rest];
+  });
+  assert.deepEqual([coarse, again, rest], [Math.floor(whole / 4), whole, whole]);
+}
+
 async function a_click_picks(page) {
   const ids = trace.frames[0].ids, picture = await drawn(page, ids), box = await (await page.$("#canvas")).boundingBox();
   const scale = box.width / picture.width, {x, y} = picture.at[3];
@@ -184,6 +209,7 @@ try {
       console.log(`${await pixels_have_the_colours_of_values(page)} pixels have their values' colours`);
       await a_cut_takes_a_part(page);
       await a_part_stands_for_the_whole(page);
+      await a_slow_picture_is_coarse(page);
       await a_click_picks(page);
       await time_goes_both_ways(page);
       console.log(`${await a_film_has_each_frame(page, context, trace.frames.length)} pictures of a film`);

@@ -68,6 +68,7 @@ export class Film {
 
   async record(rate) {
     const sources = this.page.stages().map((stage) => stage.renderer.domElement), canvas = document.createElement("canvas");
+    this.sizes = sources.map(({width, height}) => [width, height]);
     this.strip = Math.ceil(kStrip * Math.max(320, sources[0].width));
     canvas.width = even(sources.reduce((sum, one) => sum + one.width, 0));
     canvas.height = even(Math.max(...sources.map((one) => one.height)) + this.strip);
@@ -102,12 +103,11 @@ export class Film {
     pen.fillStyle = "#ffffff";
     pen.fillRect(0, 0, width, height);
     let left = 0;
-    for (const stage of page.stages()) {
-      stage.draw_now();
-      const source = stage.renderer.domElement;
-      pen.drawImage(source, left, 0);
-      left += source.width;
-    }
+    page.stages().forEach((stage, k) => {
+      stage.draw_whole();
+      pen.drawImage(stage.renderer.domElement, left, 0, ...this.sizes[k]);
+      left += this.sizes[k][0];
+    });
     const size = Math.round(0.42 * strip), words = [page.story.head.title, this.now(), this.legend()].filter(Boolean).join("    ");
     pen.fillStyle = "#222222";
     pen.font = `${size}px system-ui, sans-serif`;

@@ -10,6 +10,8 @@ import {Nodes} from "./nodes.js";
 
 const kSlow = 1000 / 30;  // ms of a frame, beyond which a moving picture shows a part
 const kLeast = 20000;     // particles of such a part
+const kFirst = 100000;    // particles with which a picture begins to move: what a machine can do is found from there on
+const kCoarse = 0.25;     // of the pixels along each side, at least, where that part is slow too
 const kSettles = 200;     // ms
 
 // The box that repeats at a step (model/contract/box_deformation.h).
@@ -37,7 +39,7 @@ export class Stage {
     this.extent = box.extent.map((length) => length / this.size);
     this.radius = head.radius / this.size;
     this.bounds = {middle: [0, 0, 0], extent: this.extent, beyond: this.radius};  // of what is looked at
-    this.share = 1;
+    this.share = this.sharp = this.sharp_now = 1;
     this.moving = false;
     this.times = [];
     this.head = head;
@@ -106,7 +108,7 @@ export class Stage {
     const {clientWidth: width, clientHeight: height} = this.renderer.domElement.parentElement;
     if (!width || !height) return;
     const before = this.camera.aspect;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2) * this.sharp_now);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -115,6 +117,7 @@ export class Stage {
 
   show(places, box) {
     if (this.head.deform) this.repeats(box_at(this.head, box.step));
+    if (this.cloud.count === 0) this.share = Math.min(1, (3 * kFirst) / Math.max(1, places.length));
     this.cloud.place(places, {lower: this.inner(box.lower), extent: box.extent.map((length) => length / this.size)});
   }
   // Particles, or nodes, beyond the plane, at `share` of the body along the axis, are not drawn. No axis: all are.
@@ -156,7 +159,20 @@ export class Stage {
       this.draw_now();
     });
   }
+  sharpen(sharp) {
+    if (sharp === this.sharp_now) return;
+    this.sharp_now = sharp;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2) * sharp);
+  }
+  // With all particles and pixels, also while it moves.
+  draw_whole() {
+    const {moving} = this;
+    this.moving = false;
+    this.draw_now();
+    this.moving = moving;
+  }
   draw_now() {
+    this.sharpen(this.moving ? this.sharp : 1);
     const uniforms = this.cloud.material.uniforms;
     const height = this.renderer.domElement.height;
     uniforms.pixels.value = height / (2 * Math.tan((this.camera.fov * Math.PI) / 360));
@@ -170,19 +186,24 @@ export class Stage {
     this.last = this.moving ? now : 0;
     if (this.moving) this.draw();
   }
-  // How large a part 30 pictures a second allow, from how long the last few took.
+  // How large a part 30 pictures a second allow, and how many pixels, from how long the last few took.
   learn(took) {
     this.times.push(took);
     if (this.times.length < 3 && took < 4 * kSlow) return;
     const middle = this.times.sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];
     const least = Math.min(1, kLeast / Math.max(1, this.cloud.count));
-    if (middle > 1.15 * kSlow) this.share = Math.max(least, this.share * Math.max(0.02, kSlow / middle));
-    else if (middle < 0.6 * kSlow) this.share = Math.min(1, this.share * 1.5);
+    if (middle > 1.15 * kSlow) {
+      if (this.share > least) this.share = Math.max(least, this.share * Math.max(0.02, kSlow / middle));
+      else this.sharp = Math.max(kCoarse, this.sharp * Math.sqrt(Math.max(0.25, kSlow / middle)));
+    } else if (middle < 0.6 * kSlow) {
+      if (this.sharp < 1) this.sharp = Math.min(1, this.sharp * 1.2);
+      else this.share = Math.min(1, this.share * 1.5);
+    }
   }
   // A PNG of what is seen, as a blob.
   picture() {
-    this.draw_now();
+    this.draw_whole();
     return new Promise((done) => this.renderer.domElement.toBlob(done, "image/png"));
   }
 
