@@ -13,6 +13,7 @@
 #include "cli/run/report.h"
 #include "cli/run/report_pictures.h"
 #include "cli/run/summary.h"
+#include "cli/run/turning_picture.h"
 #include "hw/program/options.h"
 #include "model/analysis/story.h"
 #include "model/analysis/tension.h"
@@ -322,20 +323,21 @@ constexpr char kPageStyle[] =
     "1rem}"
     "h1{font-size:1.7rem;margin:0}h2{font-size:1.15rem;margin:2.4rem 0 .6rem;border-bottom:1px solid #ddd}"
     ".lead{color:#555;margin:.2rem 0 1.5rem}figure{margin:0}.wide{overflow-x:auto}"
-    "img,svg{max-width:100%;height:auto;display:block;margin:auto}svg{width:720px}"
+    "img,svg,canvas{max-width:100%;height:auto;display:block;margin:auto}svg{width:720px}"
+    "canvas{touch-action:none;cursor:grab}figcaption{text-align:center}"
     "table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem}"
     "th,td{padding:.25rem .8rem .25rem 0;text-align:left;border-bottom:1px solid #eee;vertical-align:top}"
     ".plain td{overflow-wrap:anywhere}th{font-weight:600}.note{color:#777}.bad{color:#b00020}";
 
 std::string page_head(const std::string& title) {
-  // The policy lets a browser run nothing and load nothing.
+  // The policy lets a browser load nothing, and run the script of turning_picture.h alone.
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" "
-      "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n"
+      "content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src {2}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-      html_text(title), kPageStyle);
+      html_text(title), kPageStyle, turning_script_hash());
 }
 
 // A PNG file's bytes.
@@ -374,6 +376,7 @@ void write_report(const std::string& directory, const std::string& out) {
         story_frames(steps, probe ? tension_of(trace.curves, probe->name)->stress : nullptr, onset);
     for (const size_t k : chosen) marks.push_back(shots.step(k));
     html += page_picture(pictures(loaded, shots, chosen, onset, directory));
+    html += turning_picture(loaded.scene, shots.frame(chosen.back()), colour_limit(directory));
   }
   html += curve_section(loaded, trace, marks);
   html += engine_section(loaded, trace, directory);

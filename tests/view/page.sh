@@ -44,3 +44,7 @@ sed 's/^steps = 1000/&\nprobe_every = 25\nenergy_every = 50/' "$root/scenes/lj_b
 printf '\n[[probe]]\nname = "block"\nkind = "temperature"\nregion = { shape = "sphere", radius = 100 }  # all\n' >>"$work/live.toml"
 "$node" "$here/served_page_test.mjs" "$cuboct" "$work/words" "$work/words.json" "$work/live.toml" "$work/live" "$browser" "$study_web" \
   ${pictures:+"$pictures"}
+# A bar under tension, whose report has a picture that turns.
+"$cuboct" run "$root/scenes/coupon.toml" --steps 400 --quiet --frames none --out "$work/bar" >/dev/null
+"$cuboct" report "$work/bar" >/dev/null
+"$node" "$here/report_page_test.mjs" "$work/bar/report.html" "$chromium" "$study_web" ${pictures:+"$pictures"}
