@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <string>
 #include <vector>
@@ -172,9 +173,14 @@ int main_of(const std::vector<std::string>& given, bool as_json, std::span<const
 }  // namespace
 
 int front(int argc, char** argv, std::span<const OwnCommand> own) {
-  const std::vector<std::string> words = words_of(argc, argv);
-  const bool as_json = std::ranges::count(words, "--json") > 0;
-  return with_standard_streams([&] { return main_of(words, as_json, own); },
+  bool as_json = false;
+  const auto work = [&] {
+    const std::vector<std::string> words = words_of(argc, argv);
+    as_json = std::ranges::count(words, "--json") > 0;
+    return main_of(words, as_json, own);
+  };
+  // By reference, as it holds too much to be copied without memory.
+  return with_standard_streams(std::cref(work),
                                [&](const std::string& text) { tell(InputError(text), as_json, 1); });
 }
 

@@ -10,6 +10,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <exception>
+#include <new>
 
 namespace cuboct {
 namespace {
@@ -48,6 +50,18 @@ void replace(std::FILE*& stream, cookie_write_function_t* write, int mode) {
   stream = other;
 }
 
+// What a program did not catch itself, as before it had read its words.
+int code_of(const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    std::fputs("out of memory\n", stderr);  // without taking any
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+  }
+  return 1;
+}
+
 }  // namespace
 
 void fill_standard_descriptors() {
@@ -63,7 +77,7 @@ int with_standard_streams(const std::function<int()>& work,
   std::signal(SIGPIPE, SIG_IGN);
   replace(stdout, write_output, isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF);
   replace(stderr, write_errors, _IONBF);
-  const int code = work();
+  const int code = code_of(work);
   std::fflush(stdout);
   if (output_error == 0 || output_error == EPIPE) return code;
   const std::string text = fmt::format("cannot write to standard output: {}", std::strerror(output_error));

@@ -11,8 +11,9 @@ namespace cuboct {
 // such a number, and would be overwritten by what is printed.
 void fill_standard_descriptors();
 
-// What a program's main does first, and all that it does: `work`, whose exit code it returns. Descriptors are
-// filled. A write beyond the limit of file sizes fails, as one on a full disk does.
+// What a program's main does first, and all that it does: `work`, whose exit code it returns; 1, and a line
+// of what it was, where an exception leaves it. Descriptors are filled. A write beyond the limit of file
+// sizes fails, as one on a full disk does.
 //
 // What is printed and cannot be written never stops the work. At the end a full standard output is told by
 // `tell` (by default: to standard error), and exit code 0 becomes 1. A reader of it that has left, as `head`

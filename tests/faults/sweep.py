@@ -1,0 +1,166 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Each call of a run fails once, in turn: the run ends with one clear error or goes on, what was written before is whole,
+nothing is left behind. usage: sweep.py BIN FAIL_CALL.so [--engines E,...] [--calls C,...] [--most N] [--grow SHARE]
+
+A run is new, or goes on from a checkpoint. The n-th call fails for n = 1, 2, 3, ... until the run makes fewer; beyond
+--most the step grows by SHARE of n."""
+import argparse
+import collections
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SCENE = Path(__file__).resolve().parent.parent / "samples" / "scene.toml"
+CALLS = "open write rename sync truncate mmap fork thread memory directory read".split()
+PROGRAMS = {"systemc": "cuboct-systemc", "gpu": "cuboct-gpu"}  # others run in the command's own process
+RUN = ["run", "scene.toml", "--steps", "24", "--frame-every", "6", "--frames", "xyz", "--checkpoint-every", "6 steps", "--quiet", "--out", "out"]
+SECONDS = 60
+LEFT = re.compile(r"\.tmp|\.part|~$|\.lock$")  # of a directory that no run is at work in
+KEPT = {"out/trace.part.h5": "trace.h5", "out/rasters.part.h5": "rasters.h5"}  # frames so far, where the file itself could not be made
+
+
+class Runs:
+    def __init__(self, given):
+        self.bin, self.library, self.given = given.bin, given.library, given
+        self.folder = Path(tempfile.mkdtemp(prefix="cuboct-faults-"))
+        shutil.copy(SCENE, self.folder / "scene.toml")
+        (self.folder / "tmp").mkdir()
+        self.out, self.mark = self.folder / "out", self.folder / "mark"
+
+    def run(self, words, **fault):
+        environment = {**os.environ, "TMPDIR": str(self.folder / "tmp"), "XDG_CACHE_HOME": str(self.folder / "cache"), "LC_ALL": "C"}
+        if fault:
+            environment |= {"LD_PRELOAD": str(self.library), "CUBOCT_FAIL_MARK": str(self.mark)}
+            environment |= {f"CUBOCT_FAIL_{key.upper()}": str(value) for key, value in fault.items()}
+        self.mark.unlink(missing_ok=True)
+        return subprocess.run([self.bin / "cuboct", *words], cwd=self.folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                              timeout=SECONDS)
+
+    def clear(self):
+        shutil.rmtree(self.out, ignore_errors=True)
+        for left in (self.folder / "tmp").iterdir():
+            shutil.rmtree(left) if left.is_dir() else left.unlink()
+
+    def result(self):
+        """What a whole run left: the hash of its last state, and its frames."""
+        summary = json.loads((self.out / "summary.json").read_text())
+        return summary.get("state_hash"), summary["steps"], (self.out / "frames.xyz").read_bytes()
+
+    def left(self):
+        names = [str(p.relative_to(self.folder)) for place in ("out", "tmp") for p in (self.folder / place).rglob("*")]
+        return [n for n in names if (LEFT.search(n) or n.startswith("tmp/")) and not (n in KEPT and not (self.out / KEPT[n]).exists())]
+
+
+class Sweep:
+    def __init__(self, runs, engine):
+        self.runs, self.engine = runs, engine
+        self.words = RUN + ["--engine", engine]
+        self.wrong, self.ends, self.said = [], collections.Counter(), {}
+        runs.clear()
+        whole = runs.run(self.words)
+        if whole.returncode != 0:
+            raise SystemExit(f"{engine}: {whole.stderr.decode()}")
+        self.reference = runs.result()
+        self.cut = self.cut_at_checkpoint()
+
+    def cut_at_checkpoint(self):
+        """A directory whose run was killed with its second checkpoint; None where the engine leaves none."""
+        cut = self.runs.folder / f"cut-{self.engine}"
+        for at in range(1, 20):
+            self.runs.clear()
+            self.runs.run(self.words, call="rename", at=at, kills=1)
+            if not (self.runs.out / "checkpoint").exists():
+                continue
+            shutil.copytree(self.runs.out, cut)
+            return cut
+        return None
+
+    def judge(self, case, done, before):
+        runs, code, said = self.runs, done.returncode, done.stderr.decode(errors="replace")
+        self.ends[code] += 1
+        self.said.setdefault((case[1], code, re.sub(r"\d+", "N", said)[:200]), case)
+        found = []
+        if code not in (0, 1, 2):
+            found.append(f"ends with {code}: {said[-300:]!r}")
+        elif code != 0 and (not said.strip() or "terminate" in said or said.count("\n") > 6):
+            found.append(f"ends with {code} and says {said[:600]!r}")
+        if (left := set(runs.left()) - before) and case[2] not in ("unlink", "remove"):
+            found.append(f"leaves {', '.join(sorted(left))}")
+        if code == 0:
+            try:
+                if runs.result() != self.reference:
+                    found.append(f"ends with 0 and another result, and says {said[:300]!r}")
+            except (OSError, ValueError) as error:
+                found.append(f"ends with 0 without a result ({error}), and says {said[:300]!r}")
+        else:
+            # Whoever tries again: from the checkpoint where there is one, else anew.
+            goes_on = ["--resume"] if (runs.out / "checkpoint").exists() else ["--force"]
+            if case[0] == "resumed" and goes_on != ["--resume"] and not (runs.out / "summary.json").exists():
+                found.append("loses the checkpoint")
+            again = runs.run(self.words + goes_on)
+            if again.returncode != 0:
+                found.append(f"cannot be run again with {goes_on[0]}: {again.stderr.decode()[:300]!r}")
+            elif runs.result() != self.reference:
+                found.append(f"run again with {goes_on[0]} has another result")
+        self.wrong += [f"{self.engine} {' '.join(map(str, case))}: {f}" for f in found]
+
+    def one(self, start, call, program, at):
+        """False where the run made fewer such calls."""
+        runs = self.runs
+        runs.clear()
+        if start == "resumed":
+            shutil.copytree(self.cut, runs.out)
+        before = set(runs.left())
+        try:
+            words = self.words + (["--resume"] if start == "resumed" else [])
+            done = runs.run(words, call=call, at=at, **({"in": program}))
+        except subprocess.TimeoutExpired:
+            self.wrong.append(f"{self.engine} {start} {call} {program} {at}: does not end")
+            return True
+        if not runs.mark.exists():
+            return False
+        self.judge((start, call, runs.mark.read_text(), program, at), done, before)
+        return True
+
+    def all(self, calls, most, grow):
+        for start in ["new"] + (["resumed"] if self.cut else []):
+            for call in calls:
+                for program in ["cuboct"] + ([PROGRAMS[self.engine]] if self.engine in PROGRAMS else []):
+                    at = 1
+                    while self.one(start, call, program, at):
+                        at += 1 if at < most else max(1, int(grow * at))
+        return self
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("bin", type=lambda p: Path(p).resolve())
+    parser.add_argument("library", type=lambda p: Path(p).resolve())
+    parser.add_argument("--engines", default="golden,reference,lattice")
+    parser.add_argument("--calls", default=",".join(CALLS))
+    parser.add_argument("--most", type=int, default=200)
+    parser.add_argument("--grow", type=float, default=0.1)
+    parser.add_argument("--tell", action="store_true", help="each kind of end")
+    given = parser.parse_args()
+    runs = Runs(given)
+    wrong, total = [], 0
+    for engine in given.engines.split(","):
+        sweep = Sweep(runs, engine).all(given.calls.split(","), given.most, given.grow)
+        wrong += sweep.wrong
+        total += sum(sweep.ends.values())
+        print(f"{engine}: {sum(sweep.ends.values())} calls failed, exit codes {dict(sorted(sweep.ends.items()))}, {len(sweep.wrong)} wrong", flush=True)
+        if given.tell:
+            for (call, code, said), case in sorted(sweep.said.items(), key=str):
+                print(f"  {code} {' '.join(map(str, case))}: {said!r}")
+    print("\n".join(wrong))
+    shutil.rmtree(runs.folder)
+    sys.exit(bool(wrong) or total == 0)
+
+
+main()
