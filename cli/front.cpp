@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
-#include <new>
 #include <string>
 #include <vector>
 
@@ -22,7 +21,6 @@
 #include "hw/program/command_line.h"
 #include "hw/program/options.h"
 #include "model/base/process.h"
-#include "model/base/resources.h"
 #include "model/base/spelling.h"
 #include "model/base/standard_streams.h"
 #include "model/base/text.h"
@@ -160,12 +158,9 @@ int main_of(const std::vector<std::string>& given, bool as_json, std::span<const
     return tell(error, as_json, 2);
   } catch (const Failed& failed) {
     return tell(failed.error, as_json, 1);
-  } catch (const std::bad_alloc&) {
-    return plain(fmt::format("out of memory: {} are free now", in_bytes(static_cast<double>(free_memory()))),
-                 1);
   } catch (const std::exception& error) {
     if (const auto refusal = path_error(error)) return tell(*refusal, as_json, 2);
-    return plain(error.what(), 1);
+    return plain(failure_text(error), 1);
   }
   return exit_code;
 }

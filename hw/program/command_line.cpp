@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <new>
 
 #include "hw/program/options.h"
+#include "model/base/resources.h"
 #include "model/base/text.h"
 
 namespace cuboct {
@@ -29,6 +31,11 @@ std::optional<InputError> path_error(const std::exception& error) {
   return InputError(fmt::format("{}: {}", refusal->path1().string(), refusal->code().message()));
 }
 
+std::string failure_text(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) == nullptr) return block_text(error.what());
+  return fmt::format("out of memory: {} are free now", in_bytes(static_cast<double>(free_memory())));
+}
+
 int run_command_line(Command& app, int argc, char** argv, const std::function<int()>& run) {
   if (const std::optional<int> ended = parse_command_line(app, argc, argv)) return *ended;
   try {
@@ -41,7 +48,7 @@ int run_command_line(Command& app, int argc, char** argv, const std::function<in
       fmt::print(stderr, "{}\n", refusal->told());
       return 2;
     }
-    fmt::print(stderr, "{}: {}\n", app.name(), block_text(error.what()));
+    fmt::print(stderr, "{}: {}\n", app.name(), failure_text(error));
     return 1;
   }
 }

@@ -253,7 +253,7 @@ int run_program(int argc, char** argv, EngineProgram& program) {
     return program.leads() ? told(e, e.told(), 2) : 2;
   } catch (const std::exception& e) {
     if (const auto refusal = path_error(e)) return told(*refusal, refusal->told(), 2);
-    const std::string text = fmt::format("{}: {}", program.name, block_text(e.what()));
+    const std::string text = fmt::format("{}: {}", program.name, failure_text(e));
     return told(InputError(text), text, 1);
   }
 }

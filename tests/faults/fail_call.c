@@ -4,7 +4,7 @@
 //   CUBOCT_FAIL_AT    which of them, from 1; 0: none
 //   CUBOCT_FAIL_IN    the program, by the name of its file; its children of other names are spared
 //   CUBOCT_FAIL_KILLS set: the program is killed there instead
-//   CUBOCT_FAIL_MARK  file that the failing call makes, with the function's name
+//   CUBOCT_FAIL_MARK  file that the failing call makes: the function's name, and from where in the program it was called, or 0
 #define _GNU_SOURCE
 #include <dirent.h>
 #include <dlfcn.h>
@@ -35,22 +35,28 @@ static atomic_int armed;
 static const char* mark;
 static int kills;
 
-static void leave_mark(const char* function) {
+static void leave_mark(const char* function, const void* caller) {
   if (mark == NULL) return;
+  Dl_info of;
+  const int known = dladdr(caller, &of) != 0 && strstr(of.dli_fname, ".so") == NULL;
+  char text[80];
+  const int size = snprintf(text, sizeof text, "%s %lx", function, known ? (long)((const char*)caller - (const char*)of.dli_fbase) : 0L);
   const long file = syscall(SYS_openat, AT_FDCWD, mark, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (file < 0) return;
-  syscall(SYS_write, file, function, strlen(function));
+  syscall(SYS_write, file, text, size);
   syscall(SYS_close, file);
 }
 
-static int fails(enum Group group, const char* function, int error) {
+static int fails_at(enum Group group, const char* function, int error, const void* caller) {
   if (group != wanted || !atomic_load_explicit(&armed, memory_order_relaxed)) return 0;
   if (atomic_fetch_add(&count, 1) + 1 != at) return 0;
-  leave_mark(function);
+  leave_mark(function, caller);
   if (kills) syscall(SYS_kill, getpid(), SIGKILL);
   errno = error;
   return 1;
 }
+
+#define fails(group, function, error) fails_at(group, function, error, __builtin_return_address(0))
 
 // What runs before main is the system's own.
 static int (*real_main)(int, char**, char**);
