@@ -51,8 +51,9 @@ void check_name(const std::string& name, const std::string& base) {
                    "cuboct synth takes modules of letters, digits and '_'");
 }
 
-Design read_design(const std::string& file, const std::string& prefix) {
-  const nlohmann::json json = read_json(file);
+namespace {
+
+Design design_in(const nlohmann::json& json, const std::string& prefix) {
   Design design;
   for (const auto& [name, module] : json.at("modules").items()) {
     Module& m = design.modules[name];
@@ -74,7 +75,30 @@ Design read_design(const std::string& file, const std::string& prefix) {
         if (directions.at(port) == "output") m.bits += bits.size();
     }
   }
+  return design;
+}
+
+// Who walks over a design trusts that no module lies within itself.
+void check_ends(const Design& design, const std::string& file) {
+  std::set<std::string> open, closed;
+  const std::function<void(const std::string&)> walk = [&](const std::string& key) {
+    if (closed.contains(key)) return;
+    if (!open.insert(key).second || open.size() > kDeepest)
+      throw std::runtime_error(fmt::format("{}: the module {} lies within itself", file, key));
+    for (const auto& [name, child] : design.modules.at(key).instances) walk(child);
+    open.erase(key);
+    closed.insert(key);
+  };
+  for (const auto& [key, module] : design.modules) walk(key);
+}
+
+}  // namespace
+
+Design read_design(const std::string& file, const std::string& prefix) {
+  Design design =
+      read_netlist_json(file, [&](const nlohmann::json& json) { return design_in(json, prefix); });
   if (design.top.empty()) throw std::runtime_error(file + ": no top module");
+  check_ends(design, file);
   return design;
 }
 

@@ -112,8 +112,8 @@ double Path::wires() const {
 }
 
 Timer::Timer(const std::string& netlist, const std::string& top, const Delays& delays) : delays_(delays) {
-  const json file = read_json(netlist);
-  Flattener(file.at("modules"), delays, cells_).add(top, "", {});
+  read_netlist_json(
+      netlist, [&](const json& file) { Flattener(file.at("modules"), delays, cells_).add(top, "", {}); });
   std::set<int> clocks;
   for (const TimedCell& cell : cells_)
     for (const TimedCell::Pin& pin : cell.pins)

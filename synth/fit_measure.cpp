@@ -40,11 +40,12 @@ Synthesis whole(const std::string& directory, bool board, Nodes nodes, const std
 
 // Nodes below a module that is flat but for them: each is a cell of its own.
 uint64_t nodes_in(const std::string& netlist, const std::string& module) {
-  uint64_t count = 0;
-  const nlohmann::json json = read_json(netlist);
-  for (const auto& [name, cell] : json.at("modules").at(module).at("cells").items())
-    count += cell.at("type") == "cuboct_node";
-  return count;
+  return read_netlist_json(netlist, [&](const nlohmann::json& json) {
+    uint64_t count = 0;
+    for (const auto& [name, cell] : json.at("modules").at(module).at("cells").items())
+      count += cell.at("type") == "cuboct_node";
+    return count;
+  });
 }
 
 nlohmann::ordered_json to_json(const Counts& counts) {

@@ -74,36 +74,39 @@ class Tree {
 
 // Calls `found(path, counts)` for each cell below `module`, the paths of kept modules joined.
 void walk(const json& modules, const std::string& module, const std::string& path, const CostOf& cost_of,
-          const std::function<void(const std::string&, const Counts&)>& found) {
+          const std::function<void(const std::string&, const Counts&)>& found, int depth = 0) {
+  if (depth > kDeepest) throw std::runtime_error(fmt::format("the module {} lies within itself", module));
   for (const auto& [cell, what] : modules.at(module).at("cells").items()) {
     const std::string& type = what.at("type").get_ref<const std::string&>();
     const std::string name = path.empty() ? cell : fmt::format("{}.{}", path, cell);
     if (const auto cost = cost_of(type)) {
       found(name, *cost);
     } else if (modules.contains(type) && !modules.at(type).at("attributes").contains("blackbox")) {
-      walk(modules, type, name, cost_of, found);
+      walk(modules, type, name, cost_of, found, depth + 1);
     } else if (type != "$scopeinfo") {
       throw std::runtime_error(fmt::format("the netlist has a cell of an unknown kind, {}", type));
     }
   }
 }
 
-json read_modules(const std::string& file) { return read_json(file).at("modules"); }
-
 }  // namespace
 
 Block read_netlist(const std::string& file, const std::string& netlist_module, const Design& design,
                    const std::string& root, const CostOf& cost_of) {
   Tree tree(design, root);
-  walk(read_modules(file), netlist_module, "", cost_of,
-       [&](const std::string& path, const Counts& counts) { tree.at(path) += counts; });
+  read_netlist_json(file, [&](const json& netlist) {
+    walk(netlist.at("modules"), netlist_module, "", cost_of,
+         [&](const std::string& path, const Counts& counts) { tree.at(path) += counts; });
+  });
   return tree.block();
 }
 
 Counts count_all(const std::string& file, const std::string& top, const CostOf& cost_of) {
   Counts all;
-  walk(read_modules(file), top, "", cost_of,
-       [&](const std::string&, const Counts& counts) { all += counts; });
+  read_netlist_json(file, [&](const json& netlist) {
+    walk(netlist.at("modules"), top, "", cost_of,
+         [&](const std::string&, const Counts& counts) { all += counts; });
+  });
   return all;
 }
 

@@ -4,13 +4,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <regex>
 #include <sstream>
+#include <string_view>
+#include <system_error>
 
 #include "model/base/error.h"
 #include "synth/json_file.h"
 
 namespace cuboct::synth {
+namespace {
+
+constexpr size_t kLongestLine = 200;  // of what is read; longer ones tell names of cells
+
+// With which the text begins; nothing where that is no number, or one too large.
+template <typename Number>
+std::optional<Number> number_in(std::string_view text) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
 
 Placed read_nextpnr_report(const std::string& file) {
   nlohmann::json json;
@@ -63,16 +79,20 @@ std::map<std::string, Use> read_utilisation(const std::string& log) {
   std::istringstream lines(log);
   std::smatch m;
   for (std::string line; std::getline(lines, line);)
-    if (line.starts_with("Info:") && std::regex_match(line, m, line_form))
-      use[m[1]] = {std::stoull(m[2]), std::stoull(m[3])};
+    if (line.size() <= kLongestLine && line.starts_with("Info:") && std::regex_match(line, m, line_form)) {
+      const auto used = number_in<uint64_t>(m[2].str()), available = number_in<uint64_t>(m[3].str());
+      if (used && available) use[m[1]] = {*used, *available};
+    }
   return use;
 }
 
 std::optional<double> read_icetime(const std::string& log) {
   static const std::regex form(R"(Total path delay: [0-9.]+ ns \(([0-9.]+) MHz\))");
+  std::istringstream lines(log);
   std::smatch m;
-  if (!std::regex_search(log, m, form)) return std::nullopt;
-  return std::stod(m[1]);
+  for (std::string line; std::getline(lines, line);)
+    if (line.size() <= kLongestLine && std::regex_search(line, m, form)) return number_in<double>(m[1].str());
+  return std::nullopt;
 }
 
 std::optional<Analysed> read_sta(const std::string& log) {
@@ -82,9 +102,9 @@ std::optional<Analysed> read_sta(const std::string& log) {
   std::istringstream lines(log);
   std::smatch m;
   for (std::string line; std::getline(lines, line);) {
-    if (line.size() > 200) continue;  // names of cells
-    if (!slack && std::regex_search(line, m, slack_form)) slack = std::stod(m[1]);
-    if (std::regex_search(line, m, power_form)) power = std::stod(m[1]);
+    if (line.size() > kLongestLine) continue;
+    if (!slack && std::regex_search(line, m, slack_form)) slack = number_in<double>(m[1].str());
+    if (std::regex_search(line, m, power_form)) power = number_in<double>(m[1].str());
   }
   if (!slack || !power) return std::nullopt;
   return Analysed{*slack, *power};
@@ -97,7 +117,8 @@ std::optional<uint64_t> read_depth(const std::string& log) {
   for (size_t at = log.find(title); at != std::string::npos; at = log.find(title, at + title.size())) {
     const size_t length = log.find(key, at);
     if (length == std::string::npos) break;
-    depth = std::max<uint64_t>(depth.value_or(0), std::stoull(log.substr(length + key.size(), 20)));
+    if (const auto cells = number_in<uint64_t>(std::string_view(log).substr(length + key.size(), 20)))
+      depth = std::max(depth.value_or(0), *cells);
   }
   return depth;
 }

@@ -52,7 +52,7 @@ Layers layers_in(const std::vector<Vec3>& x, int axis, double spacing) {
   places.reserve(x.size());
   for (const Vec3& at : x) places.push_back(std::llround((at[axis] - x.front()[axis]) / spacing));
   std::ranges::sort(places);
-  places.erase(std::ranges::unique(places).begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
   int64_t apart = places.size() < 2 ? 1 : places.back() - places.front();
   for (size_t k = 1; k < places.size(); ++k) apart = std::min(apart, places[k] - places[k - 1]);
   return {axis, static_cast<double>(apart) * spacing, static_cast<int64_t>(places.size())};

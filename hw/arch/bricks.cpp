@@ -127,7 +127,7 @@ Bricks::Bricks(const Lattice& lattice, const Cell& shape) : shape_(shape) {
     return;
   }
   const auto box = box_of(lattice, true);
-  const auto& [low, high] = box;
+  const Cell &low = box.low, &high = box.high;
   Cell length, largest;
   for (int a = 0; a < 3; ++a) {
     length[a] = high[a] - low[a] + 1;

@@ -64,7 +64,7 @@ uint32_t count_bricks(const Lattice& lattice, const Cell& brick) {
     if (keys.empty() || keys.back() != key) keys.push_back(key);  // cells come row by row
   }
   std::ranges::sort(keys);
-  return static_cast<uint32_t>(std::ranges::unique(keys).begin() - keys.begin());
+  return static_cast<uint32_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
 }
 
 namespace {

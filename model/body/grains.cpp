@@ -317,7 +317,8 @@ std::vector<Vec3> pack_grains(const Fcc& fcc, const Grains& grains, const Shape*
   std::vector<std::vector<Vec3>> parts(images.size());
   for_each_range(images.size(), 2, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
-      const auto& [image, bounds] = images[k];
+      const Image& image = images[k].first;
+      const Bounds& bounds = images[k].second;
       if (shape != nullptr && is_clear_of(*shape, bounds, fcc.cell())) continue;
       const Fcc crystal{fcc.pitch, all[image.grain].turn * fcc.orientation,
                         voronoi.centre(image) + fcc.offset};

@@ -46,6 +46,7 @@ void put(WordWriter& out, const std::vector<Vec3>& x, const std::vector<Vec3>& v
 }
 
 void take_body(WordReader& in, size_t particles, bool displaced, Body& body) {
+  in.expect(particles, displaced ? 9 : 6);
   body.x.resize(particles), body.v.resize(particles), body.u.resize(displaced ? particles : 0);
   for (size_t id = 0; id < particles; ++id)
     for (std::vector<Vec3>* of : {&body.x, &body.v, &body.u})

@@ -121,10 +121,14 @@ uint64_t WordReader::word() {
 
 uint64_t WordReader::count(uint64_t words_each) {
   const uint64_t said = word();
-  if (said > (size_ - std::min(size_, read_)) / words_each)
-    throw InputError(fmt::format("{} is damaged: {} things of {} words do not fit behind its word {}", path_,
-                                 said, words_each, read_));
+  expect(said, words_each);
   return said;
+}
+
+void WordReader::expect(uint64_t things, uint64_t words_each) const {
+  if (things > (size_ - std::min(size_, read_)) / words_each)
+    throw InputError(fmt::format("{} is damaged: {} things of {} words do not fit behind its word {}", path_,
+                                 things, words_each, read_));
 }
 
 void WordReader::words(std::span<uint64_t> values) {

@@ -69,6 +69,8 @@ class WordReader {
   // The number of things that follow, of at least `words_each`: InputError where the file is too short for
   // them.
   uint64_t count(uint64_t words_each);
+  // InputError where the file is too short for so many.
+  void expect(uint64_t things, uint64_t words_each) const;
   void words(std::span<uint64_t> values);
   void seek(uint64_t word);  // the running hash goes on as if the words between were not there
 
