@@ -127,7 +127,8 @@ TextComparison::~TextComparison() = default;
 uint64_t TextComparison::step() const { return parts_->after.step; }
 
 bool TextComparison::compare(Told& told, const std::vector<RealFrame>& frames) const {
-  const auto& [scene, floats, first, after] = *parts_;
+  const auto& [scene, floats, first, later] = *parts_;
+  const auto& after = later;  // a binding is captured by no lambda
   bool within = check_state(told, first, frames.front(), "at the start");
   const RealFrame& last = frames.back();
   for (const RealFrame& frame : frames) {

@@ -24,8 +24,9 @@ std::span<const Migration::Arrival> Migration::arrivals(int axis, uint32_t node,
 
 Migration::OfNode Migration::departures(int axis, uint32_t node) const {
   const auto& all = departures_[at(axis)];
-  const auto found = std::ranges::equal_range(all, node, {}, &Departure::node);
-  return {static_cast<uint32_t>(found.begin() - all.begin()), {found.begin(), found.end()}};
+  const auto begin = std::ranges::lower_bound(all, node, {}, &Departure::node);
+  const auto end = std::ranges::upper_bound(all, node, {}, &Departure::node);
+  return {static_cast<uint32_t>(begin - all.begin()), {begin, end}};
 }
 
 void Migration::count(uint32_t node, int axes, MachineEvents& events) const {
