@@ -39,3 +39,14 @@ install(FILES cli/completion/cuboct.bash DESTINATION share/bash-completion/compl
 install(FILES cli/completion/_cuboct DESTINATION share/zsh/site-functions)
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:cuboct>
   -D OUT=\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/man/man1 -P ${PROJECT_SOURCE_DIR}/tools/man_pages.cmake COMMAND_ERROR_IS_FATAL ANY)")
+# What is inside of it, and what it was made with.
+find_program(CUBOCT_PYTHON3 python3)
+mark_as_advanced(CUBOCT_PYTHON3)
+if(CUBOCT_PYTHON3)
+  install(CODE "set(bill \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/share/doc/cuboct\")
+    file(MAKE_DIRECTORY \"\${bill}\")
+    execute_process(COMMAND ${CUBOCT_PYTHON3} ${PROJECT_SOURCE_DIR}/tools/bill_of_materials ${PROJECT_VERSION} --out \"\${bill}/cuboct.spdx\"
+      COMMAND_ERROR_IS_FATAL ANY)")
+else()
+  message(STATUS "Installation: without its bill of materials, as python3 is not found")
+endif()
