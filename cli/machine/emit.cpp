@@ -108,6 +108,7 @@ void emit(EmitOptions options) {
     if (!options.input.stage.empty() || !options.input.from.empty())
       throw InputError("--fit chooses a machine for a scene that begins with its packing",
                        "emit without --fit takes --stage and --from");
+    refuse_static(load_scene(options.input.scene, {}), "hardware");
     emit_fitted(options.input, options.fit, options.out, options.emission, options.answer);
     return;
   }

@@ -15,6 +15,7 @@
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
+#include "model/config/changes.h"
 #include "study/machines/machine_evolution.h"
 #include "study/machines/machine_front.h"
 #include "study/machines/machine_page.h"
@@ -232,7 +233,7 @@ class Exploration {
     const std::string head =
         line_text(fmt::format("# Chosen by `cuboct explore {} --best`.", options_.study)) + "\n";
     write_text(options_.out + "/best_arch.toml", head + c.arch_text);
-    write_text(options_.out + "/best_scene.toml", c.scene_text);
+    write_text(options_.out + "/best_scene.toml", with_whole_paths(c.scene_text, c.scene.path));
     answer_.say("  arch             {}/best_arch.toml\n", line_text(options_.out));
     if (!options_.emit.empty()) {
       const Setup setup = setup_of(c);

@@ -137,10 +137,10 @@ bool Machine<Policy>::run_together(uint32_t steps, bool hash) {
       return go_on_together<decltype(lanes)>(s.stream, s.own, options_.block, s.rule->cache(),
                                              s.rule->cache_words(), steps, s.meeting, s.hashes.data(), f);
     };
-    if (particles_ <= kMostOfEightLanes)
-      ran = go_on(PairLanes<8>());
-    else if constexpr (!kDoubles)
-      ran = particles_ <= kMostOfFourLanes ? go_on(PairLanes<4>()) : go_on(PairLanes<2>());
+    // A device that does not hold so many threads may hold those of fewer lanes.
+    ran = particles_ <= kMostOfEightLanes && go_on(PairLanes<8>());
+    if constexpr (!kDoubles)
+      ran = ran || (particles_ <= kMostOfFourLanes && go_on(PairLanes<4>())) || go_on(PairLanes<2>());
   });
   if (ran) near_age_ = kNever;  // steps over near lists go on with new ones
   return ran;

@@ -5,6 +5,7 @@
 #include <toml++/toml.h>
 
 #include <charconv>
+#include <filesystem>
 #include <string_view>
 
 #include "model/base/error.h"
@@ -168,6 +169,35 @@ std::string with_changes(const std::string& text, const std::string& path,
   for (const Change& change : changes) result = with_change(std::move(result), path, change);
   parsed(result, path);
   return result;
+}
+
+namespace {
+
+void find_files(const toml::node& node, const std::string& key, const std::filesystem::path& directory,
+                std::vector<Change>& changes) {
+  const auto below = [&](std::string_view part) {
+    return key.empty() ? std::string(part) : fmt::format("{}.{}", key, part);
+  };
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, value] : *table) {
+      if (name.str().find('.') != std::string_view::npos) continue;  // no key of a change
+      const auto file = value.value<std::string>();
+      if (name.str() == "file" && file && !std::filesystem::path(*file).is_absolute())
+        changes.push_back({below("file"), json_text((directory / *file).lexically_normal().string())});
+      find_files(value, below(name.str()), directory, changes);
+    }
+  } else if (const toml::array* array = node.as_array()) {
+    for (size_t k = 0; k < array->size(); ++k)
+      find_files((*array)[k], below(std::to_string(k)), directory, changes);
+  }
+}
+
+}  // namespace
+
+std::string with_whole_paths(const std::string& text, const std::string& path) {
+  std::vector<Change> changes;
+  find_files(parsed(text, path), "", std::filesystem::absolute(path).parent_path(), changes);
+  return with_changes(text, path, changes);
 }
 
 }  // namespace cuboct

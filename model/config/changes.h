@@ -21,4 +21,7 @@ struct Change {
 std::string with_changes(const std::string& text, const std::string& path,
                          const std::vector<Change>& changes);
 
+// The text for another directory: what its keys `file` name from the directory of `path` gets whole paths.
+std::string with_whole_paths(const std::string& text, const std::string& path);
+
 }  // namespace cuboct

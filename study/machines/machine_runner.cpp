@@ -162,11 +162,15 @@ void MachineRunner::find(const std::vector<size_t>& group, uint64_t steps,
     });
     if (!text.empty()) why[key] = text;
   }
-  // A scene's place in the study may change, its text may not.
-  Hash text;
-  for (const char c : base.scene_text + base.arch_text) text.add(c);
+  // A scene's place in the study may change, what it says may not: its files are in plan and state.
+  Hash said;
+  for (const char c : base.scene_text + base.arch_text) said.add(c);
+  if (shared) {
+    said.add(static_cast<int64_t>(shared->plan().hash));
+    said.add(static_cast<int64_t>(hash_of(shared->plan().lattice, shared->initial())));
+  }
   const auto key_of = [&](const std::string& machine) {
-    return fmt::format("{} steps, {:016x}{}", steps, text.value(),
+    return fmt::format("{} steps, {:016x}{}", steps, said.value(),
                        machine.substr(std::min(machine.find(' '), machine.size())));
   };
   std::vector<std::string> missing;

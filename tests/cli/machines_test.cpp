@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "model/base/output.h"
@@ -138,6 +139,26 @@ TEST(ExploreMachines, NumbersOfARuleOfTextAreThoseOfCuboctEnergy) {
   const Bench scene(false);
   write_text(scene.path("rounds.toml"), kRounds);
   expect_numbers_of_energy(Machines(kGrid, scene.path("rounds.toml")), scene.path("rounds.toml"));
+}
+
+// A rule's file counts as the scene's own text does, and the scene that is chosen finds it.
+TEST(ExploreMachines, KnowARulesFile) {
+  const Bench scene(false);
+  const std::string text = kRounds, scene_part = text.substr(0, text.find("reach = "));
+  // The tables of a rule's own file have no [rule] before them.
+  const std::string rule = std::regex_replace(text.substr(scene_part.size()), std::regex("rule\\."), "");
+  write_text(scene.path("rounds.toml"), scene_part + "file = \"rule.toml\"\n");
+  write_text(scene.path("rule.toml"), rule);
+  const Machines m(kGrid, scene.path("rounds.toml"));
+  ASSERT_EQ(m.explore({"--best"}).code, 0);
+  const Answer check = m.bench.cuboct({"check", m.bench.path("results") + "/best_scene.toml"});
+  EXPECT_EQ(check.code, 0) << check.err;
+  const double before = std::stod(m.table()[0].at("cycles, low"));
+  // A third round.
+  write_text(scene.path("rule.toml"),
+             rule + "[[round]]\nsum.again = \"crowd_j\"\nfinish.crowd = \"max(min(again, 30), -30)\"\n");
+  ASSERT_EQ(m.explore().code, 0);
+  EXPECT_GT(std::stod(m.table()[0].at("cycles, low")), 1.2 * before);
 }
 
 // Nothing in a build without the page.

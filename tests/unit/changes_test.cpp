@@ -62,6 +62,16 @@ TEST(Changes, AddWhatIsMissing) {
   EXPECT_EQ(with_changes("[run]", "a.toml", {{"run.steps", "6"}}), "[run]\nsteps = 6\n");
 }
 
+TEST(Changes, WholePathsAreOfTheFirstDirectory) {
+  EXPECT_EQ(
+      with_whole_paths(
+          "[rule]\nfile = \"texts/heat.toml\"  # ours\n[[tie]]\nfile = \"/there/a.csv\"\n[[tie]]\n"
+          "file = \"../b.csv\"\nname = \"file\"\n",
+          "/scenes/rules/heat.toml"),
+      "[rule]\nfile = \"/scenes/rules/texts/heat.toml\"  # ours\n[[tie]]\nfile = \"/there/a.csv\"\n[[tie]]\n"
+      "file = \"/scenes/b.csv\"\nname = \"file\"\n");
+}
+
 TEST(Changes, TakeOut) {
   expect_replaced({{"run.dt", ""}}, "dt = \"0.5 µs\"   # short\n", "");
   EXPECT_EQ(changed({{"run.nothing", ""}, {"nowhere.at", ""}}), kText);
