@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "hw/cost/cycles.h"
 #include "hw/rtl/rtl_emit.h"
 #include "model/base/output.h"
 #include "model/contract/golden.h"
@@ -107,7 +108,7 @@ TEST_F(RuleEmit, TheProjectTellsOfItsRounds) {
     EXPECT_TRUE(fs::exists(root_ / ("rtl/cuboct_pair_" + std::to_string(k + 1) + ".sv")));
     EXPECT_TRUE(fs::exists(root_ / ("rtl/cuboct_finish_" + std::to_string(k + 1) + ".sv")));
   }
-  EXPECT_FALSE(json.at("cycles_per_step").contains("expected"));  // the pair law's alone
+  EXPECT_EQ(json.at("cycles_per_step").at("expected"), expected_cycles(plan, c.setup.initial).step);
   for (const auto& file : json.at("files")) EXPECT_TRUE(fs::exists(root_ / file.get<std::string>())) << file;
   for (const char* page : {"node.md", "pipeline.md"})
     EXPECT_TRUE(fs::exists(root_ / "docs/reference" / page));
