@@ -2,12 +2,12 @@
 #include "python/page.h"
 
 #include <filesystem>
-#include <string_view>
 #include <utility>
 #include <variant>
 
 #include "cli/run/outputs.h"
 #include "model/base/error.h"
+#include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
@@ -47,14 +47,9 @@ std::string page_of(const Shown& shown, const std::vector<std::string>& words) {
   const int code = Process(program, all, false, {"/dev/null", errors}).wait();
   if (interrupted()) throw Interrupted();
   if (code == 0) return read_text(file);
-  std::string text = read_text(errors), hint;
+  std::string text = read_text(errors);
   if (text.ends_with('\n')) text.pop_back();
-  constexpr std::string_view kHint = "\n  hint: ";
-  if (const size_t at = text.find(kHint); at != std::string::npos) {
-    hint = text.substr(at + kHint.size());
-    text.resize(at);
-  }
-  throw InputError(text, hint);
+  throw error_of(text);
 }
 
 }  // namespace cuboct::python
