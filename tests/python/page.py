@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Runs the Python blocks of docs/user/python.md, one after another. usage: page.py ROOT DIRECTORY_OF_CUBOCT"""
+"""Runs the Python blocks of docs/user/python.md, one after another.
+
+usage: page.py ROOT DIRECTORY_OF_CUBOCT [without_view]; the latter of a build without the page of a run: blocks that show it are left out"""
 import os
 import re
 import sys
 import tempfile
 
-root, programs = sys.argv[1:]
+root, programs, *without = sys.argv[1:]
 os.environ["PATH"] = programs + ":" + os.environ["PATH"]
 with open(os.path.join(root, "docs/user/python.md"), encoding="utf-8") as file:
     text = file.read()
@@ -16,6 +18,9 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     for found in re.finditer(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
         line = text.count("\n", 0, found.start(1))
+        if without and ".view(" in found[1]:
+            print(f"line {line + 1}: left out, this build has no page of a run")
+            continue
         exec(compile("\n" * line + found[1], "docs/user/python.md", "exec"), names)
         blocks += 1
     os.chdir("/")
