@@ -27,7 +27,7 @@ inline Body fcc_block(int cells, double pitch) {
 
 inline Periodic fcc_box(int cells, double pitch) {
   Periodic box;
-  box.extent.setConstant(cells * std::numbers::sqrt2 * pitch);
+  box.extent = Vec3::Constant(cells * std::numbers::sqrt2 * pitch);
   return box;
 }
 

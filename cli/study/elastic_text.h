@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/solid/elastic_tensor.h"
 #include "model/solid/moduli.h"
 

@@ -78,7 +78,7 @@ std::vector<std::pair<std::string, Scene>> variants_of(const Scene& scene) {
   }
   const bool damping = scene.rule.damping.coefficient > 0;
   const study::Parts none{false, false, false, false};
-  const bool ring = (scene.periodic.extent.array() > 0).all();
+  const bool ring = scene.periodic.extent.minCoeff() > 0;
   std::vector<std::pair<std::string, Scene>> out;
   out.emplace_back(ring ? "body, periodic" : "body with its surface", with_parts(scene, none));
   const auto add = [&](bool there, const char* name, bool study::Parts::*part) {

@@ -183,7 +183,7 @@ double stops_of(const Vec3& displacement, double edge) {
 }
 
 // Whether a box that moves by `displacement` touches all of the box around its first and its last place.
-bool sweeps_a_box(const Vec3& displacement) { return (displacement.array() != 0).count() <= 1; }
+bool sweeps_a_box(const Vec3& displacement) { return std::ranges::count(displacement, 0.0) >= 2; }
 
 // Refuses paths that take too long to follow. Whether there are paths.
 bool check_paths(const Scene& scene, double edge, const Cell& period) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/analysis/reading.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

@@ -7,6 +7,7 @@
 
 #include "model/analysis/measure.h"
 #include "model/analysis/temperature.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

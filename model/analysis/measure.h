@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/analysis/crack.h"
+#include "model/base/mat3.h"
 #include "model/contract/fixed_rule.h"
 #include "model/contract/lattice.h"
 #include "model/contract/state.h"

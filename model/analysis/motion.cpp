@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
-
+#include "model/base/dense.h"
 #include "model/contract/law.h"
 #include "model/rules/rounds_rule.h"
 
@@ -67,7 +66,7 @@ Speeds speeds_of(const Scene& scene) {
     turning += r.cross(v - mean);
     inertia += r.squaredNorm() * Mat3::Identity() - r * r.transpose();
   });
-  const Vec3 omega = inertia.completeOrthogonalDecomposition().solve(turning);
+  const Vec3 omega = least_squares(inertia, turning);
   double rotation = 0, left = 0;
   each_free([&](const Vec3& x, const Vec3& v) {
     const Vec3 rigid = omega.cross(x - centre);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/real/reference.h"
 #include "model/scene/scene.h"
 

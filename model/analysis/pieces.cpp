@@ -6,11 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Dense>
-
 #include "model/analysis/clusters.h"
 #include "model/analysis/crack.h"
 #include "model/analysis/motion.h"
+#include "model/base/dense.h"
 #include "model/contract/material_name.h"
 #include "model/contract/neighbours.h"
 
@@ -92,7 +91,7 @@ Vec3 spin_of(const Scene& scene, const Piece& piece) {
   for (int a = 0; a < 3; ++a)
     if (piece.steers((a + 1) % 3) || piece.steers((a + 2) % 3))
       turning[a] = 0, inertia.row(a).setZero(), inertia.col(a).setZero();
-  return inertia.completeOrthogonalDecomposition().solve(turning);
+  return least_squares(inertia, turning);
 }
 
 // The motion of a rigid body that is nearest to the particles', and what it leaves.
@@ -112,7 +111,7 @@ void read_velocities(const Scene& scene, Piece& piece) {
   // What rounding leaves of a fit is no motion.
   const double least =
       1e-9 * piece.velocities.low.cwiseAbs().cwiseMax(piece.velocities.high.cwiseAbs()).norm();
-  piece.inner = (piece.inner.array() > least).select(piece.inner, 0);
+  piece.inner = piece.inner.map([&](double c) { return c > least ? c : 0; });
   if (piece.inner_rms <= least) piece.inner_rms = 0;
   if (piece.spin.norm() * piece.size().norm() <= least) piece.spin = Vec3::Zero();
 }

@@ -8,6 +8,7 @@
 
 #include "model/analysis/measure.h"
 #include "model/analysis/watch.h"
+#include "model/base/mat3.h"
 #include "model/real/reference.h"
 
 namespace cuboct {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/base/spelling.h"
 #include "model/body/packing.h"
 #include "model/contract/material_name.h"
@@ -48,11 +49,11 @@ double period(const Fcc& fcc, int axis) {
 
 SceneCell cell_of(const Scene& scene, const std::string& material) {
   SceneCell out;
-  if ((scene.periodic.extent.array() > 0).all()) {
+  if (scene.periodic.extent.minCoeff() > 0) {
     if (!material.empty())
       throw InputError("--material is for scenes whose box does not repeat along all axes",
                        "the cell is the box, with all its materials");
-    out.cell.vectors = scene.periodic.extent.asDiagonal();
+    out.cell.vectors = diagonal(scene.periodic.extent);
     out.cell.x = scene.body.x;
     out.cell.type = scene.body.type;
     out.of = "the scene's box";
@@ -99,7 +100,7 @@ CrystalCell slab_of(const Scene& scene, const std::string& material, int layers)
   slab.type.assign(slab.x.size(), type_of(scene, material));
   slab.repeats = {true, true, false};
   box.extent.z() *= layers / static_cast<double>(begin.size());
-  slab.vectors = box.extent.asDiagonal();
+  slab.vectors = diagonal(box.extent);
   return slab;
 }
 

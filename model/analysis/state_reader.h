@@ -8,6 +8,7 @@
 #include "model/analysis/near_pairs.h"
 #include "model/analysis/particle_stress.h"
 #include "model/analysis/reading.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

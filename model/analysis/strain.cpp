@@ -45,7 +45,7 @@ Mat3 StrainMeter::gradient(size_t i, const std::vector<Vec3>& present) const {
   Vec3 inverse = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
     if (values[k] > 1e-6 * values[2]) inverse[k] = 1 / values[k];
-  return Mat3::Identity() + moved * vectors * inverse.asDiagonal() * vectors.transpose();
+  return Mat3::Identity() + moved * vectors * eigen(inverse).asDiagonal() * vectors.transpose();
 }
 
 std::vector<LocalStrain> StrainMeter::measure(const std::vector<Vec3>& present) const {

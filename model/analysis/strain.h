@@ -13,7 +13,7 @@
 #include <functional>
 #include <vector>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 #include "model/contract/nearest_image.h"
 #include "model/contract/rule.h"
 

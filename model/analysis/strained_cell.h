@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/base/fire.h"
+#include "model/base/mat3.h"
 #include "model/real/real_engine.h"
 #include "model/solid/elastic_tensor.h"
 

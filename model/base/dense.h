@@ -3,7 +3,7 @@
 // twenty seconds more. Matrix: Eigen::Matrix2d, Mat3, Matrix6, Eigen::MatrixXd.
 #pragma once
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 
@@ -25,5 +25,8 @@ template <typename Matrix>
 Eigensystem<Matrix> eigensystem(const Matrix& symmetric);
 
 Matrix6 inverse(const Matrix6& matrix);
+
+// The shortest x with matrix x = value, or of least squares where there is none.
+Vec3 least_squares(const Mat3& matrix, const Vec3& value);
 
 }  // namespace cuboct

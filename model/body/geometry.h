@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

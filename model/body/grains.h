@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/body/packing.h"
 
 namespace cuboct {

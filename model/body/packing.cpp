@@ -96,7 +96,7 @@ PackingSize packing_size(const Fcc& fcc, const Shape* shape, const Periodic& box
   for (int l = 0; l < along; ++l)
     for (int k = 0; k < along; ++k)
       for (int h = 0; h < along; ++h) {
-        const Vec3 x = bounds.low + (Vec3(h, k, l).array() + 0.5).matrix().cwiseProduct(extent) / along;
+        const Vec3 x = bounds.low + (Vec3(h, k, l) + Vec3::Constant(0.5)).cwiseProduct(extent) / along;
         const double distance = shape->distance(x);
         inside += distance <= kSiteTolerance * fcc.pitch ? 1 : 0;
         looked += std::min(1.0, fcc.cell() / std::abs(distance));

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/body/geometry.h"
 #include "model/contract/rule.h"
 

@@ -119,7 +119,8 @@ PackedSection section_in(const PackedShape& packed, const Slab& slab) {
 }  // namespace
 
 double layer_spacing(const Fcc& fcc, const Vec3& direction) {
-  const bool odd = (direction.array().abs().round() - 2 * (direction.array().abs() / 2).floor() == 1).all();
+  const bool odd = std::ranges::all_of(
+      direction, [](double h) { return std::round(std::abs(h)) - 2 * std::floor(std::abs(h) / 2) == 1; });
   return fcc.cell() / 2 / direction.norm() * (odd ? 2 : 1);
 }
 

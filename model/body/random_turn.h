@@ -3,7 +3,7 @@
 #pragma once
 #include <random>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

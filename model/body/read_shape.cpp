@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "model/base/mat3.h"
 #include "model/body/regions.h"
 
 namespace cuboct {
@@ -113,7 +114,7 @@ ShapePtr read_placement(const ConfigTable& t, ShapePtr shape) {
   Mat3 rotation = Mat3::Identity();
   if (const auto rotate = t.table_at("rotate")) {
     const Vec3 axis = rotate->at("axis").direction().normalized();
-    rotation = Eigen::AngleAxisd(rotate->number("angle", quantity::angle), axis).toRotationMatrix();
+    rotation = Eigen::AngleAxisd(rotate->number("angle", quantity::angle), eigen(axis)).toRotationMatrix();
   }
   return transform(std::move(shape), scale, rotation,
                    t.vector_or("translate", quantity::length, Vec3::Zero()));

@@ -64,9 +64,7 @@ class Solid final : public Shape {
   }
   Bounds bounds() const override { return {bounds_.low, bounds_.high}; }
 
-  bool in_bounds(const Vec3& x) const {
-    return (x.array() >= bounds_.low.array()).all() && (x.array() <= bounds_.high.array()).all();
-  }
+  bool in_bounds(const Vec3& x) const { return x.within(bounds_.low, bounds_.high); }
   // Of the first `rays`; those of the shell `but` set aside.
   Votes votes(const Vec3& x, int rays, uint32_t but = kNoShell) const {
     static const std::array<Vec3, kRays> kDirections = directions();

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/contract/box_deformation.h"
 #include "model/contract/rule.h"
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/rules/lps_bond.h"
 #include "model/rules/lps_lattice.h"
 #include "model/rules/lps_terms.h"
@@ -128,7 +129,7 @@ double critical_stretch(const LpsMaterial& m, const std::vector<Vec3>& full, dou
 
 std::vector<Vec3> lattice_bonds(const std::array<Vec3, 3>& basis, double horizon) {
   Mat3 m;
-  m << basis[0], basis[1], basis[2];
+  m << eigen(basis[0]), eigen(basis[1]), eigen(basis[2]);
   const double reach = horizon * (1 + 1e-6);
   // |n_k| is at most the reach times the length of the k-th row of the inverse.
   const Mat3 inverse = m.inverse();

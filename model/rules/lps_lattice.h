@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/rules/lps.h"
 
 namespace cuboct {

@@ -11,7 +11,7 @@ Mat3 shape_of(const LpsMaterial& material, double whole, const SurfaceSums& sums
   Vec3 inverse = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
     if (values[k] > kNone * values[2] && values[2] > kNone) inverse[k] = 1 / values[k];
-  return vectors * inverse.asDiagonal() * vectors.transpose();
+  return vectors * eigen(inverse).asDiagonal() * vectors.transpose();
 }
 
 }  // namespace cuboct

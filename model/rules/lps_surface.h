@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 #include "model/rules/lps.h"
 
 namespace cuboct {

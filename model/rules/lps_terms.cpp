@@ -317,7 +317,7 @@ class TermsOfBody final : public LpsTerms {
         const double p = pressure + pressure_[j], q = half * (inverse + inverse_[j]);
         if (kFinite) {
           const LpsBondNow<double> now = lps_now(r.data(), length_[b], moved.data());
-          sum += lps_pull(now, length_[b], w, p, q) * Eigen::Map<const Vec3>(now.y);
+          sum += lps_pull(now, length_[b], w, p, q) * Vec3(now.y);
         } else {
           sum += lps_small_pull(r.data(), moved.data(), length_[b], w, p, q) * r;
         }

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {
@@ -37,7 +38,7 @@ std::vector<Half> halves_of(std::span<const Vec3> x, const Periodic& periodic, d
 // from + q d = corner + s along + t across.
 bool Slit::cuts(const Vec3& from, const Vec3& d) const {
   Mat3 m;
-  m << along, across, -d;
+  m << eigen(along), eigen(across), -eigen(d);
   const double volume = m.determinant();
   if (std::abs(volume) < 1e-12 * along.norm() * across.norm() * d.norm()) return false;
   const Vec3 at = m.inverse() * (from - corner);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/contract/rule.h"
 #include "model/rules/declaration.h"
 

@@ -66,9 +66,9 @@ template <class File, typename T>
 requires requires(File& f, T& t) { f.item(t); }
 void visit(File& file, T& value) { file.item(value); }
 template <class File, typename T>
-requires requires(T& t) { t.data(), t.rows(); }
+requires requires(T& t) { t.squaredNorm(); }
 void visit(File& file, T& matrix) {
-  for (Eigen::Index k = 0; k < matrix.size(); ++k) file.item(matrix.data()[k]);
+  for (size_t k = 0; k < static_cast<size_t>(matrix.size()); ++k) file.item(matrix.data()[k]);
 }
 template <class File>
 void visit(File& file, auto& point) requires requires {

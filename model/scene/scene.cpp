@@ -90,7 +90,7 @@ double vibrations_limit(const Scene& scene, const Vec3& low, const Vec3& high) {
   Body part;
   for (size_t i = 0; i < scene.body.size(); ++i) {
     const Vec3& x = scene.body.x[i];
-    if ((x.array() < low.array()).any() || (x.array() > high.array()).any()) continue;
+    if (!x.within(low, high)) continue;
     part.x.push_back(x);
     part.type.push_back(scene.body.type[i]);
   }
@@ -136,7 +136,7 @@ TimeLimits time_limits(const Scene& scene, size_t listed) {
       std::swap(low, high);
       for (size_t i = scene.body.size() - listed; i < scene.body.size(); ++i)
         low = low.cwiseMin(scene.body.x[i]), high = high.cwiseMax(scene.body.x[i]);
-      low.array() -= 3 * cutoff, high.array() += 3 * cutoff;
+      low -= Vec3::Constant(3 * cutoff), high += Vec3::Constant(3 * cutoff);
       for (int axis = 0; axis < 3; ++axis)
         if (scene.periodic.extent[axis] > 0) low[axis] = -kNone, high[axis] = kNone;
     }

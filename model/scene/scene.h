@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/base/places.h"
 #include "model/body/mesh.h"
 #include "model/contract/box_deformation.h"

@@ -118,7 +118,7 @@ void pack_geometry(const ConfigTable& root, const Regions& regions, const Packin
     if (periodic[a]) scene.periodic.extent[a] = boxed.extent[a];
   scene.periodic.origin = boxed.origin;
   const auto geometry = root.find("geometry");
-  const bool whole_box = (boxed.extent.array() > 0).all();
+  const bool whole_box = boxed.extent.minCoeff() > 0;
   if (!geometry && !whole_box)
     root.at("packing").fail("nothing says what to pack", "add [geometry], or [box] with 'cells'");
   ShapePtr shape;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "model/base/error_parts.h"
+#include "model/base/mat3.h"
 #include "model/base/spelling.h"
 #include "model/contract/law.h"
 #include "model/scene/scene_parts.h"
@@ -36,9 +37,8 @@ void read_orientation(const ConfigTable& table, PackingChoice& packing) {
   if (x.norm() == 0 || y.norm() == 0) axes->fail("'axes' must not hold a zero direction");
   if (std::abs(x.dot(y)) > 1e-9 * x.norm() * y.norm())
     axes->fail("the two directions of 'axes' are not perpendicular");
-  packing.fcc.orientation.row(0) = x.normalized();
-  packing.fcc.orientation.row(1) = y.normalized();
-  packing.fcc.orientation.row(2) = x.normalized().cross(y.normalized());
+  const Vec3 rows_of[3] = {x.normalized(), y.normalized(), x.normalized().cross(y.normalized())};
+  for (int k = 0; k < 3; ++k) packing.fcc.orientation.row(k) = eigen(rows_of[k]);
   packing.along = {least_integers(x), least_integers(y), std::nullopt};
   if (packing.along[0] && packing.along[1])
     packing.along[2] = least_integers(packing.along[0]->cross(*packing.along[1]));

@@ -232,7 +232,7 @@ void place_file_particles(const FileParticles& of, Scene& scene) {
       if (!(x[a] - low >= 0 && x[a] - low < extent)) x[a] = low;  // a last bit below the box
     }
     body.x.push_back(x);
-    body.v.push_back(file.v.empty() || file.momenta ? Vec3::Zero().eval() : file.v[i]);
+    body.v.push_back(file.v.empty() || file.momenta ? Vec3::Zero() : file.v[i]);
   }
 }
 

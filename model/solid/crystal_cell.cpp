@@ -26,7 +26,7 @@ std::vector<CellImage> images_of(const CrystalCell& cell, double range) {
     const Vec3 normal = cell.vectors.col((k + 1) % 3).cross(cell.vectors.col((k + 2) % 3));
     if (cell.repeats[k]) most[k] = static_cast<int>(std::ceil(reach * normal.norm() / cell.volume()));
   }
-  low.array() -= range, high.array() += range;
+  low -= Vec3::Constant(range), high += Vec3::Constant(range);
   std::vector<CellImage> images;
   for (int a = -most[0]; a <= most[0]; ++a)
     for (int b = -most[1]; b <= most[1]; ++b)
@@ -35,8 +35,7 @@ std::vector<CellImage> images_of(const CrystalCell& cell, double range) {
         const Vec3 shift(a, b, c), by = cell.vectors * shift;
         for (uint32_t i = 0; i < cell.x.size(); ++i) {
           const Vec3 at = cell.x[i] + by;
-          if ((at.array() >= low.array()).all() && (at.array() <= high.array()).all())
-            images.push_back({i, shift});
+          if (at.within(low, high)) images.push_back({i, shift});
         }
       }
   return images;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/contract/bond.h"
 
 namespace cuboct {

@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -68,7 +69,7 @@ std::vector<Vec3> best_of_grid(const std::vector<Bond>& bonds, const Mat3& recip
   for (const Bond& bond : bonds) {
     std::array<int, 3> turns;  // b_i . d over 2 pi, modulo kGrid
     for (int a = 0; a < 3; ++a) {
-      const auto whole = std::lround(reciprocal.col(a).dot(bond.d) / (2 * std::numbers::pi));
+      const auto whole = std::lround(reciprocal.col(a).dot(eigen(bond.d)) / (2 * std::numbers::pi));
       turns[a] = static_cast<int>((whole % kGrid + kGrid) % kGrid);
     }
     classes.try_emplace(turns, Mat3::Zero()).first->second += bond.constants;

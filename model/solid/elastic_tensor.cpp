@@ -93,7 +93,7 @@ ElasticTensor elastic_tensor(const Rule& rule, const CrystalCell& cell) {
     for (int v = 0; v < 6; ++v) dd[v] = bond.d[kVoigt[v][0]] * bond.d[kVoigt[v][1]];
     out.born += g / (2 * volume) * dd * dd.transpose();
     out.stress += lateral / (2 * volume) * bond.d * bond.d.transpose();
-    couplings.middleRows<3>(3 * bond.from) += g * bond.d * dd.transpose();
+    couplings.middleRows<3>(3 * bond.from) += g * eigen(bond.d) * dd.transpose();
     force[bond.from] += lateral * bond.d;
     coupled = std::max(coupled, std::abs(g) * bond.d.norm() * dd.norm());
   }

@@ -4,6 +4,7 @@
 // Wallace, Thermodynamics of Crystals (1972), sections 2 and 7.
 #pragma once
 
+#include "model/base/mat3.h"
 #include "model/solid/crystal_cell.h"
 #include "model/solid/dynamical_matrix.h"
 

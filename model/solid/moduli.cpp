@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "model/solid/moduli.h"
 
+#include "model/base/mat3.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -24,8 +26,8 @@ Eigen::Matrix<double, 3, 2> across(const Vec3& n) {
   int least = 0;
   n.cwiseAbs().minCoeff(&least);
   Eigen::Matrix<double, 3, 2> out;
-  out.col(0) = n.cross(Vec3::Unit(least)).normalized();
-  out.col(1) = n.cross(out.col(0)).normalized();
+  const Vec3 first = n.cross(Vec3::Unit(least)).normalized();
+  out << eigen(first), eigen(n.cross(first).normalized());
   return out;
 }
 

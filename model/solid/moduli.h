@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "model/base/mat3.h"
 #include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

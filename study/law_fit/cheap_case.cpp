@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "model/base/mat3.h"
 #include "model/scene/scene_parts.h"
 
 namespace cuboct::fit {
@@ -36,7 +37,7 @@ Mat3 pull_axes(const Scene& scene, const Vec3& axis) {
   axis.cwiseAbs().maxCoeff(&nearest);
   const Vec3 side = axis.cross(Vec3::Unit((nearest + 1) % 3)).normalized();
   Mat3 axes;
-  axes << axis.normalized(), side, axis.normalized().cross(side);
+  axes << eigen(axis.normalized()), eigen(side), eigen(axis.normalized().cross(side));
   return scene.orientation.transpose() * axes;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "model/base/mat3.h"
 #include "model/scene/scene.h"
 #include "study/law_fit/drawn_law.h"
 #include "study/law_fit/target.h"

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "model/base/mat3.h"
 #include "study/law_fit/drawn_law.h"
 #include "study/law_fit/target.h"
 #include "study/law_fit/virtual_test.h"

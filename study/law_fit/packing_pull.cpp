@@ -25,7 +25,7 @@ Stresses stresses(const PairLaw& law, const std::vector<Vec3>& bonds, const Vec3
     const Vec3 square = d.cwiseAbs2(), w = stretch.cwiseProduct(square);
     out.p -= f / r * w;
     out.slope -= (law.slope(r) - f / r) / (r * r) * w * w.transpose();
-    out.slope.diagonal() -= f / r * square;
+    out.slope.diagonal() -= eigen(f / r * square);
   }
   return out;
 }
@@ -36,10 +36,10 @@ void free_sides(const PairLaw& law, const std::vector<Vec3>& bonds, Vec3& stretc
   constexpr double kLargest = 0.01, kSmallest = 1e-7;  // changes of a stretch
   for (int k = 0; k < kSteps; ++k) {
     const Stresses now = stresses(law, bonds, stretch);
-    const Eigen::Vector2d move = now.slope.bottomRightCorner<2, 2>().ldlt().solve(-now.p.tail<2>());
+    const Eigen::Vector2d move = now.slope.bottomRightCorner<2, 2>().ldlt().solve(-eigen(now.p).tail<2>());
     const double size = move.cwiseAbs().maxCoeff();
     if (!(size > kSmallest)) return;
-    stretch.tail<2>() += size > kLargest ? Eigen::Vector2d(kLargest / size * move) : move;
+    eigen(stretch).tail<2>() += size > kLargest ? Eigen::Vector2d(kLargest / size * move) : move;
   }
 }
 

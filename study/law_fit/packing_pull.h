@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "model/base/mat3.h"
 #include "model/contract/rule.h"
 
 namespace cuboct::fit {

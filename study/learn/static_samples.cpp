@@ -8,6 +8,7 @@
 
 #include "model/atoms/bond_order/atom_motion.h"
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/base/places.h"
 #include "model/config/config.h"
 #include "study/learn/samples.h"
@@ -48,7 +49,7 @@ StaticLoad discs(const LearnStudy& study, const Vec3& extent, const DiscInput& d
   load.shape = [disc, half](const Vec3& x) {
     double sum = 0;
     for (int j = -1; j <= 1; ++j) {
-      const double r = (x - j * half * Vec3::Unit(disc.centres)).head<2>().norm();
+      const double r = eigen(x - j * half * Vec3::Unit(disc.centres)).head<2>().norm();
       sum += (j == 0 ? 1 : -1) * std::cos(std::numbers::pi / 2 * std::min(1.0, r / disc.radius));
     }
     return Vec3(sum * Vec3::Unit(disc.force));

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/rules/lps.h"
 #include "model/rules/quadrature.h"
 
@@ -31,7 +32,8 @@ WaveOperator::WaveOperator(const Grid& grid, double horizon) : grid_(grid), hori
   weight_ = Eigen::Map<const Eigen::VectorXd>(weights->data(), static_cast<Eigen::Index>(weights->size()));
   length_.resize(weight_.size());
   for (size_t p = 0; p < around.size(); ++p)
-    offset_.emplace_back(around[p].head<2>()), length_[static_cast<Eigen::Index>(p)] = around[p].norm();
+    offset_.emplace_back(eigen(around[p]).head<2>()),
+        length_[static_cast<Eigen::Index>(p)] = around[p].norm();
   const int n = grid.points;
   for (int b = 0; b < n; ++b)
     for (int a = 0; a < n; ++a) {
@@ -155,7 +157,8 @@ std::array<double, 2> WaveOperator::anisotropy(const Eigen::VectorXd& kappa,
 std::vector<Eigen::Vector2cd> WaveOperator::waves_of(const std::vector<Vec3>& field) const {
   std::vector<Eigen::Vector2cd> out(wave_.size(), Eigen::Vector2cd::Zero());
   for (size_t p = 0; p < field.size(); ++p) {
-    const Eigen::Vector2d x = grid_.at(p).head<2>(), f = field[p].head<2>();
+    const Vec3 at = grid_.at(p);
+    const Eigen::Vector2d x = eigen(at).head<2>(), f = eigen(field[p]).head<2>();
     for (size_t k = 0; k < wave_.size(); ++k) out[k] += std::polar(1.0, -wave_[k].dot(x)) * f;
   }
   return out;

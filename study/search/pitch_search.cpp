@@ -120,7 +120,8 @@ class Packings {
     for (int a = 0; a < 3; ++a)
       free_[a] = live[static_cast<size_t>(a)] && scene.periodic.extent[a] == 0 ? 1 : 0;
     for (const ConfigTable& plane : root.tables("symmetry"))
-      free_ = free_.cwiseProduct((plane.at("normal").direction().array() == 0).cast<double>().matrix());
+      free_ =
+          free_.cwiseProduct(plane.at("normal").direction().map([](double n) { return n == 0 ? 1.0 : 0.0; }));
   }
 
   double first() const { return pitch_; }

@@ -154,8 +154,8 @@ TEST(LatticeProgramFaults, AtAWidthsEndAreSeenFromBothEnds) {
 TEST(LatticeProgramFaults, AreSeenFromTheOtherEndAcrossASeam) {
   for (const bool seam : {false, true}) {
     Scene scene = block_scene({.size = {4, 4, 4}, .cutoff = 1.4, .dt = 0.1, .jitter = 0, .speed = 0});
-    scene.periodic.origin.setConstant(-0.3);
-    scene.periodic.extent.setConstant(4 * std::sqrt(2.0));
+    scene.periodic.origin = Vec3::Constant(-0.3);
+    scene.periodic.extent = Vec3::Constant(4 * std::sqrt(2.0));
     scene.body = {};
     scene.body.x = {{0.1, 1, 1}, {seam ? 5.2 : 0.7, 1, 1}};
     scene.body.v = {{0.8, 0, 0}, {0, 0, 0}};

@@ -155,7 +155,7 @@ Case pressed() {
   constexpr double kPress = 0.9;
   Scene scene = block_scene({.size = {8, 8, 24}, .cutoff = 1.2, .jitter = 0, .speed = 0});
   for (Vec3& x : scene.body.x) x *= kPress;
-  scene.periodic.origin.setConstant(-0.25 * kPress * kEdge);
+  scene.periodic.origin = Vec3::Constant(-0.25 * kPress * kEdge);
   scene.periodic.extent = Vec3(8, 8, 24) * kPress * kEdge;
   const auto first_of = [](size_t x, size_t y, size_t z) { return 4 * (x + 8 * (y + 8 * z)); };
   scene.body.v[first_of(7, 5, 9)] = scene.body.v[first_of(3, 5, 13)] = {0.3, -0.2, 0.1};

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "model/atoms/bond_order/atom_cell.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -107,7 +108,7 @@ TEST_P(TersoffSet, TurnsWithItsAtoms) {
   TersoffForces forces(tersoff_set(GetParam()));
   AtomCell cell = sheared_slab();
   const Result here = evaluated(forces, cell);
-  const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
+  const Mat3 turn = Eigen::AngleAxisd(1.1, eigen(Vec3(1, -2, 0.5).normalized())).toRotationMatrix();
   const Result turned = evaluated(forces, strained(cell, turn - Mat3::Identity()));
   EXPECT_NEAR(turned.energy, here.energy, 1e-12 * std::abs(here.energy));
   for (size_t i = 0; i < cell.x.size(); ++i)

@@ -7,6 +7,7 @@
 
 #include "model/atoms/bond_order/atom_cell.h"
 #include "model/atoms/bond_order/atom_motion.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -123,7 +124,7 @@ TEST(AtomMotion, RestsAroundASlit) {
     return std::abs(x[0] - middle[0]) < 10 && std::abs(x[1] - middle[1]) < 1.2;
   });
   AtomMotion motion(tersoff_set("c_1989"), system, {});
-  motion.deform(Vec3(1, 1.02, 1).asDiagonal().toDenseMatrix());
+  motion.deform(diagonal({1, 1.02, 1}));
   const AtomMotion::Rest rest = motion.rest(1e-5);
   ASSERT_TRUE(rest.reached);
   double tip = 0, side = 0;

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {

@@ -13,7 +13,8 @@ namespace {
 
 Mat3 along(const Vec3& pull, const Vec3& side) {
   Mat3 axes;
-  axes << pull.normalized(), side.normalized(), pull.normalized().cross(side.normalized());
+  axes << eigen(pull.normalized()), eigen(side.normalized()),
+      eigen(pull.normalized().cross(side.normalized()));
   return axes;
 }
 

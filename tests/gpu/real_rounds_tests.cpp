@@ -205,7 +205,8 @@ TEST(RealRounds, FloatsKnowWhoIsFar) {
   const size_t flyer = scene.body.size() - 1;
   double top = 0;  // of those below
   for (size_t i = 0; i < flyer; ++i)
-    if (scene.body.x[i].head<2>().norm() < 1e-11) top = std::max(top, scene.body.x[i].z());
+    if (std::hypot(scene.body.x[i].x(), scene.body.x[i].y()) < 1e-11)
+      top = std::max(top, scene.body.x[i].z());
   const double reach = scene.rule.cutoff();
   const gpu::RealSpace space(scene.body, scene.periodic, reach, false);
   const double again = std::ldexp(space.place_unit(2), 32);

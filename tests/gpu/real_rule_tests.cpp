@@ -221,8 +221,8 @@ Worst sweep(const NamedRule& named) {
     const double error = (got - expected).norm();
     const double bound =
         r < reach ? bound_of(law_of, tables, r, exact_w.cwiseAbs().dot(exact_d.cwiseAbs()), i, j) : 0;
-    EXPECT_LE(error, bound) << named.name << " at " << wanted << " cutoffs: " << got.transpose()
-                            << " instead of " << expected.transpose();
+    EXPECT_LE(error, bound) << named.name << " at " << wanted << " cutoffs: " << got << " instead of "
+                            << expected;
     if (bound > 0) worst.of_bound = std::max(worst.of_bound, error / bound);
     largest = std::max(largest, expected.norm());
     scale = std::max({scale, expected.norm(),

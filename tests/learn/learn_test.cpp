@@ -10,6 +10,7 @@
 #include <random>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/rules/lps.h"
 #include "study/learn/kernel_fit.h"
 #include "tests/cli/shell.h"
@@ -72,8 +73,8 @@ std::vector<StaticSample> elastic(const Grid& grid, double lambda, double mu, in
             const Eigen::Matrix2d stiffness =
                 mu * q.squaredNorm() * Eigen::Matrix2d::Identity() + (lambda + mu) * q * q.transpose();
             const Eigen::Vector2d u = stiffness.ldlt().solve(Eigen::Vector2d::Unit(axis)) * 1e9;
-            sample.u.back().head<2>() += u * std::cos(q.dot(x.head<2>())) / 2;
-            sample.b.back()[axis] += 1e9 * std::cos(q.dot(x.head<2>())) / 2;
+            eigen(sample.u.back()).head<2>() += u * std::cos(q.dot(eigen(x).head<2>())) / 2;
+            sample.b.back()[axis] += 1e9 * std::cos(q.dot(eigen(x).head<2>())) / 2;
           }
         }
         out.push_back(sample);

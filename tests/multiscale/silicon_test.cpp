@@ -12,6 +12,7 @@
 #include "model/atoms/multiscale/tersoff_law.h"
 #include "model/atoms/multiscale/wave.h"
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -48,7 +49,8 @@ TEST(Silicon, OfEightAtomsIsThatOfSixtyFour) {
 TEST(Silicon, PulledAlongCrystalAxesHasTheirModulus) {
   for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(1, 1, 1)}) {
     ElementMesh mesh = box_mesh({2, 2, 2}, {1e-6, 1e-6, 1e-6}, {true, false, false}, 100);
-    const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(direction, Vec3::UnitX()).toRotationMatrix();
+    const Mat3 turn =
+        Eigen::Quaterniond::FromTwoVectors(eigen(direction), eigen(Vec3::UnitX())).toRotationMatrix();
     ElementBody body(std::move(mesh), shared(), {turn}, {});
     const StretchPoint point = Stretch(body, 0, 1e-5).to(1e-4);
     EXPECT_NEAR(point.stress / 1e-4 / youngs_modulus(silicon().constants, direction), 1, 2e-3) << direction;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/atoms/multiscale/atomic_sample.h"
+#include "model/base/mat3.h"
 
 namespace cuboct::test {
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "model/analysis/strained_cell.h"
+#include "model/base/mat3.h"
 #include "model/body/packing.h"
 #include "model/contract/law.h"
 #include "model/solid/moduli.h"
@@ -52,7 +53,7 @@ TEST(Elastic, LennardJonesConstantsAreThoseOfLammps) {
   uint64_t evaluations = 0;
   const Matrix6 sums = elastic_tensor(rule, cell).c,
                 strained = constants_by_strain(rule, cell, 1e-6, 1, evaluations);
-  const Mat3 turn = Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitZ()).toRotationMatrix();
+  const Mat3 turn = Eigen::AngleAxisd(std::numbers::pi / 4, eigen(Vec3::UnitZ())).toRotationMatrix();
   int compared = 0;
   for (const auto& [axes, size] : {std::pair{Mat3(Mat3::Identity()), Vec3(4 * edge, 4 * edge, 4 * edge)},
                                    {turn, Vec3(6 * pitch, 6 * pitch, 4 * edge)}}) {
@@ -82,7 +83,7 @@ TEST(Elastic, ConstantsOfALayeredMixtureAreThoseOfLammps) {
   rule.strength = {{1, kBetween}, {kBetween, kStiffer}};
   const double edge = std::numbers::sqrt2 * relaxed_pitch(*rule.law, 1.1);
   CrystalCell start;
-  start.vectors = edge * Vec3(2, 1, 1).asDiagonal();
+  start.vectors = edge * diagonal({2, 1, 1});
   for (int plane = 0; plane < 4; ++plane)
     for (int k = 0; k < 2; ++k) {
       start.x.emplace_back(edge / 2 * Vec3(plane, k, (plane + k) % 2));
@@ -112,10 +113,9 @@ TEST(Elastic, ConstantsOfALayeredMixtureAreThoseOfLammps) {
             body.type.push_back(cell.type[i]);
           }
     body.v.assign(body.size(), Vec3::Zero());
-    run.periodic.extent =
-        (cell.vectors.diagonal().array() * Eigen::Array3d(kCopies[0], kCopies[1], kCopies[2]))
-            .matrix()
-            .cwiseProduct(stretch);
+    run.periodic.extent = Vec3(cell.vectors.diagonal())
+                              .cwiseProduct(Vec3(kCopies[0], kCopies[1], kCopies[2]))
+                              .cwiseProduct(stretch);
     return lammps_stress(run, body);
   };
   for (int axis = 0; axis < 2; ++axis) {

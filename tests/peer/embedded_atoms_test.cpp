@@ -5,6 +5,7 @@
 // Both have the same tables in doubles. They differ by rounding, and LAMMPS's time has units of its own.
 #include <gtest/gtest.h>
 
+#include "model/base/mat3.h"
 #include "tests/peer/lammps.h"
 #include "tests/rules/metal.h"
 
@@ -57,7 +58,7 @@ Metal copper_tantalum() {
 
 test::LammpsForces beside(const Metal& of, int steps = 0, double dt = 0.001) {
   test::LammpsAtoms atoms;
-  atoms.box = {(of.crystal.periodic.extent / kAngstrom).asDiagonal(), {true, true, true}};
+  atoms.box = {diagonal(of.crystal.periodic.extent / kAngstrom), {true, true, true}};
   for (const Vec3& x : of.crystal.body.x) atoms.x.push_back(x / kAngstrom);
   atoms.element = of.crystal.body.type;
   atoms.elements = of.elements;

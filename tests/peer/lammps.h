@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/atoms/bond_order/atom_box.h"
+#include "model/base/mat3.h"
 #include "model/contract/rule.h"
 
 namespace cuboct::test {

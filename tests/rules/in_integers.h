@@ -34,7 +34,7 @@ struct InIntegers {
     fixed = quantise_without_law(rule, edge, widths);
     Vec3 low = Vec3::Constant(INFINITY), high = -low;
     for (const Vec3& x : scene.body.x) low = low.cwiseMin(x), high = high.cwiseMax(x);
-    origin = low.array() - 1.25 * edge;
+    origin = low - Vec3::Constant(1.25 * edge);
     Cell count{};
     for (int a = 0; a < 3; ++a) count[a] = static_cast<int32_t>(std::ceil((high[a] - origin[a]) / edge)) + 1;
     std::vector<Cell> cells;

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "tests/rules/lps_body.h"
 #include "tests/support/refused_with.h"
 
@@ -67,7 +68,7 @@ TEST(Lps, ForcesBalanceAndATurnedBodyIsAtRest) {
   EXPECT_LT(sum.norm(), 1e-13 * scale);
   EXPECT_LT(moment.norm(), 1e-12 * scale);
   std::vector<Vec3> turned;
-  const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Mat3 turn = Eigen::AngleAxisd(1.1, eigen(Vec3(1, 2, 3).normalized())).toRotationMatrix();
   for (const Vec3& at : body.x) turned.push_back(turn * at + Vec3(5, 6, 7));
   for (const Vec3& at : lps.forces(turned)) EXPECT_LT(at.norm(), 1e-12);
 }

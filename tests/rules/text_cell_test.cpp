@@ -11,6 +11,7 @@
 #include "model/analysis/scene_cell.h"
 #include "model/analysis/strained_cell.h"
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/contract/law.h"
 #include "model/scene/rule_cell.h"
 #include "model/scene/scene.h"
@@ -114,7 +115,7 @@ TEST(TextCell, OfCopperAreTheSlopesOfItsEnergy) {
     return (copper_energy(kStep * e) + copper_energy(-kStep * e) - 2 * copper_energy(Mat3::Zero())) * pascal /
            (kStep * kStep);
   };
-  const Mat3 pull = Vec3(1, 0, 0).asDiagonal(), both = Vec3(1, 1, 0).asDiagonal();
+  const Mat3 pull = diagonal({1, 0, 0}), both = diagonal({1, 1, 0});
   Mat3 shear = Mat3::Zero();
   shear(1, 2) = shear(2, 1) = 0.5;
   const double c11 = curvature(pull), c12 = curvature(both) / 2 - c11, c44 = curvature(shear);
@@ -126,7 +127,7 @@ TEST(TextCell, OfCopperAreTheSlopesOfItsEnergy) {
   const double pitch = one.vectors.col(0).norm();
   const Body body = test::fcc_block(1, pitch);
   CrystalCell cubic;
-  cubic.vectors = test::fcc_box(1, pitch).extent.asDiagonal();
+  cubic.vectors = diagonal(test::fcc_box(1, pitch).extent);
   cubic.x = body.x, cubic.type = body.type;
   EXPECT_LT(apart(constants_of(scene.rule, cubic).c, found.c), 1e-6);
 }

@@ -27,7 +27,7 @@ TEST(Cleavage, OfNearestNeighboursIsTheClosedForm) {
   EXPECT_NEAR(-rule.law->energy(kPitch) / (3e5 * kPitch * kPitch), 0.0024,
               5e-5);  // docs/reference/physics.md
   const auto expect = [&](const Vec3& n, double bonds) {
-    EXPECT_NEAR(cleavage_energy(rule, cell, n), bonds * unit, 1e-9 * bonds * unit) << n.transpose();
+    EXPECT_NEAR(cleavage_energy(rule, cell, n), bonds * unit, 1e-9 * bonds * unit) << n;
   };
   expect({1, 0, 0}, 4);
   expect({1, 1, 0}, 3 * std::sqrt(2.0));

@@ -74,8 +74,8 @@ TEST(Phonons, ThePresetsAreStableEverywhere) {
       for (int j = 0; j <= i; ++j) {
         for (int k = 0; k <= j; ++k, ++checked) {
           const Vec3 q = 2 * pi / sqrt2 / 7 * Vec3(i, j, k);
-          EXPECT_GE(squared_frequencies(*law, 1, 1, q)[0], -1e-12) << name << " at " << q.transpose();
-          EXPECT_LE(squared_frequencies(*law, 1, 1, q)[2], 8 + 1e-12) << name << " at " << q.transpose();
+          EXPECT_GE(squared_frequencies(*law, 1, 1, q)[0], -1e-12) << name << " at " << q;
+          EXPECT_LE(squared_frequencies(*law, 1, 1, q)[2], 8 + 1e-12) << name << " at " << q;
         }
       }
     }

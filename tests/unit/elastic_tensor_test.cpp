@@ -9,6 +9,7 @@
 
 #include "model/analysis/scene_cell.h"
 #include "model/analysis/strained_cell.h"
+#include "model/base/mat3.h"
 #include "model/contract/law.h"
 #include "model/solid/moduli.h"
 #include "tests/fcc_block.h"
@@ -68,7 +69,7 @@ TEST(ElasticTensor, OfAMixtureIsThatOfTheStrainedSimulation) {
     rule.strength = {{1, 0.5}, {0.5, 4}};
     const Body body = test::fcc_block(cells, kPitch);
     CrystalCell cell;
-    cell.vectors = test::fcc_box(cells, kPitch).extent.asDiagonal();
+    cell.vectors = diagonal(test::fcc_box(cells, kPitch).extent);
     cell.x = body.x;
     cell.type = body.type;
     std::mt19937_64 dice(7);
@@ -94,7 +95,7 @@ TEST(ElasticTensor, OfTwoBondsInSeriesIsTheHarmonicMean) {
   rule.strength = {{1, 3}, {3, 1}};
   // A A B B repeats: bonds AA 1, AB 3, BB 1, BA 3.
   CrystalCell cell;
-  cell.vectors = Vec3(4, 10, 10).asDiagonal();
+  cell.vectors = diagonal({4, 10, 10});
   for (int i = 0; i < 4; ++i) cell.x.emplace_back(i, 0, 0), cell.type.push_back(i < 2 ? 0 : 1);
   const ElasticTensor tensor = elastic_tensor(rule, cell);
   // Per area 100: stiffness of a bond times its length over the area; the mean compliance is (1 + 1/3)/2.

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/body/regions.h"
 #include "tests/support/refused_with.h"
 
@@ -53,7 +54,7 @@ void expect_lipschitz_and_bounded(const Shape& shape) {
     const Vec3 x = points.in(b.low - pad, b.high + pad), y = points.in(b.low - pad, b.high + pad);
     EXPECT_LE(std::abs(shape.distance(x) - shape.distance(y)), (x - y).norm() * (1 + 1e-12));
     if (shape.distance(x) < 0) {
-      EXPECT_TRUE((x.array() >= b.low.array()).all() && (x.array() <= b.high.array()).all()) << x.transpose();
+      EXPECT_TRUE(x.within(b.low, b.high)) << x;
     }
   }
 }
@@ -78,7 +79,7 @@ TEST(Geometry, FieldsAreLipschitz) {
         capsule({0, 0, 0}, {3, 0, 4}, 1), extrude({0, 4, 4, 2, 0}, {0, 0, 3, 1, 3}, 2),
         subtract(box({0, 0, 0}, {4, 4, 4}), {sphere({2, 2, 4}, 1.5)}),
         transform(box({0, 0, 0}, {1, 2, 3}), 2,
-                  Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix(), {5, 6, 7})})
+                  Eigen::AngleAxisd(0.7, eigen(Vec3(1, 2, 3).normalized())).toRotationMatrix(), {5, 6, 7})})
     expect_lipschitz_and_bounded(*shape);
 }
 
@@ -91,8 +92,9 @@ TEST(Geometry, DistancesAtKnownPoints) {
   EXPECT_DOUBLE_EQ(c->distance({4, 0, 6}), 5);
   EXPECT_DOUBLE_EQ(half_space({0, 0, 1}, {0, 0, 3})->distance({5, 5, 4}), 3);
   EXPECT_DOUBLE_EQ(extrude({0, 4, 4, 0}, {0, 0, 4, 4}, 2)->distance({7, 8, 0}), 5);
-  const auto moved = transform(sphere({1, 0, 0}, 1), 2,
-                               Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ()).toRotationMatrix(), {0, 0, 5});
+  const auto moved =
+      transform(sphere({1, 0, 0}, 1), 2, Eigen::AngleAxisd(kPi / 2, eigen(Vec3::UnitZ())).toRotationMatrix(),
+                {0, 0, 5});
   EXPECT_NEAR(moved->distance({0, 2, 5}), -2, 1e-15);  // the centre: (1,0,0) -> (2,0,0) -> (0,2,0) -> (0,2,5)
 }
 

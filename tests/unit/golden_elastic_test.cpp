@@ -51,7 +51,7 @@ Mat3 stress(const Mat3& strain) {
   for (uint32_t n = 0; n < cells.size(); ++n)
     for (const Particle* i : cells[n]) {
       const Vec3& at = scene.body.x[i->id];
-      if ((at.array() < low.array()).any() || (at.array() > high.array()).any()) continue;
+      if (!at.within(low, high)) continue;
       ++bulk;
       for (const auto& [other, offset] : setup.plan.lattice.neighbourhood(n))
         for (const Particle* j : cells[other]) {

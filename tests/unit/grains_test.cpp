@@ -14,6 +14,7 @@
 #include "model/analysis/scene_cell.h"
 #include "model/analysis/strained_cell.h"
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/contract/neighbours.h"
 #include "model/scene/scene.h"
 #include "model/solid/moduli.h"
@@ -178,9 +179,9 @@ TEST(Grains, SameSeedSameBits) {
 // becomes patches of such rows.
 TEST(Grains, ColumnsKeepTheirLayers) {
   Fcc fcc{.pitch = 1};
-  fcc.orientation.row(0) = Vec3(1, -1, 0).normalized();
-  fcc.orientation.row(1) = Vec3(1, 1, -2).normalized();
-  fcc.orientation.row(2) = Vec3(1, 1, 1).normalized();
+  fcc.orientation.row(0) = eigen(Vec3(1, -1, 0).normalized());
+  fcc.orientation.row(1) = eigen(Vec3(1, 1, -2).normalized());
+  fcc.orientation.row(2) = eigen(Vec3(1, 1, 1).normalized());
   const auto plate = box(Vec3(0, 0, -0.5), Vec3(60, 60, 0.5));
   const Grains grains{.size = 15, .seed = 2, .column_axis = 2};
   const std::vector<Vec3> sites = pack_grains(fcc, grains, plate.get(), {}, {});

@@ -25,7 +25,7 @@ TEST(PackingScatter, LayersAreApartAsSitesAre) {
     double least = 1e9;
     for (auto h = std::next(heights.begin()); h != heights.end(); ++h)
       if (*h - *std::prev(h) > 2) least = std::min(least, static_cast<double>(*h - *std::prev(h)));
-    EXPECT_NEAR(layer_spacing(fcc, n), 1e-6 * least, 3e-6) << n.transpose();
+    EXPECT_NEAR(layer_spacing(fcc, n), 1e-6 * least, 3e-6) << n;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "model/base/mat3.h"
 #include "model/body/packing.h"
 
 namespace cuboct {
@@ -41,9 +42,9 @@ TEST(Packing, PeriodicBoxIsPerfect) {
 // LAMMPS-like orientation x = [110], y = [-110], z = [001]: the repeats are a*|hkl| with 8 particles in one.
 TEST(Packing, TurnedPeriodicBoxIsPerfect) {
   Fcc fcc{.pitch = 1};
-  fcc.orientation.row(0) = Vec3(1, 1, 0).normalized();
-  fcc.orientation.row(1) = Vec3(-1, 1, 0).normalized();
-  fcc.orientation.row(2) = Vec3(0, 0, 1);
+  fcc.orientation.row(0) = eigen(Vec3(1, 1, 0).normalized());
+  fcc.orientation.row(1) = eigen(Vec3(-1, 1, 0).normalized());
+  fcc.orientation.row(2) = eigen(Vec3(0, 0, 1));
   const Vec3 repeat(std::sqrt(2) * fcc.cell(), std::sqrt(2) * fcc.cell(), fcc.cell());
   Periodic box{.origin = Vec3::Zero(), .extent = 3 * repeat};
   const auto x = pack(fcc, nullptr, box);
@@ -60,7 +61,7 @@ TEST(Packing, TurnedPeriodicBoxIsPerfect) {
 // turn; so density is kept.
 TEST(Packing, CountFollowsVolume) {
   Fcc fcc{.pitch = 0.1,
-          .orientation = Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix(),
+          .orientation = Eigen::AngleAxisd(0.4, eigen(Vec3(1, 2, 3).normalized())).toRotationMatrix(),
           .offset = {0.01, 0.02, 0.03}};
   const double radius = 1;
   const auto ball = sphere({0.3, 0.2, 0.1}, radius);
@@ -119,7 +120,7 @@ TEST(Packing, AThinTurnedPlateLosesNoSite) {
   for (const Vec3& axis : turns)
     for (const double angle : {0.0, 0.7, M_PI / 4, M_PI / 2}) {
       const Fcc fcc{.pitch = 0.1,
-                    .orientation = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(),
+                    .orientation = Eigen::AngleAxisd(angle, eigen(axis.normalized())).toRotationMatrix(),
                     .offset = {0.01, 0.02, 0.03}};
       const auto plate = box(Vec3(0.3, -0.2, 0.1), Vec3(2.3, 0.9, 0.25));
       const auto ball = sphere({1.3, 0.35, 0.175}, 1.5);
@@ -157,7 +158,7 @@ TEST(Packing, ThermalVelocitiesAreNormal) {
   for (const Vec3& u : v) {
     sum += u;
     second += u.squaredNorm();
-    fourth += u.array().pow(4).sum();
+    fourth += u.cwiseAbs2().squaredNorm();
     cross += u[0] * u[1] + u[1] * u[2] + u[2] * u[0];
   }
   const double count = 3.0 * n;

@@ -60,7 +60,7 @@ FarOrigin measure(double pitches, Precision precision) {
   state.step(200);
   const std::vector<Vec3> expected = state.forces();
   Body moved = state.body();
-  for (Vec3& x : moved.x) x.array() += pitches;
+  for (Vec3& x : moved.x) x += Vec3::Constant(pitches);
   const std::vector<Vec3> got = Reference(scene.rule, moved, {}, {.precision = precision}).forces();
   std::vector<double> errors;
   for (size_t i = 0; i < n; ++i)

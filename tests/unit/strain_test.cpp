@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/strain.h"
+#include "model/base/mat3.h"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ TEST(Strain, OfAnAffineMapIsThatMap) {
 }
 
 TEST(Strain, OfARotationIsZero) {
-  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Mat3 turn = Eigen::AngleAxisd(0.7, eigen(Vec3(1, 2, 3).normalized())).toRotationMatrix();
   const std::vector<Vec3> before = fcc(2);
   std::vector<Vec3> after;
   for (const Vec3& x : before) after.push_back(turn * x);

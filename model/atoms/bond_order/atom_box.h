@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "model/atoms/bond_order/atom_cell.h"
 
+#include "model/base/mat3.h"
+
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -79,7 +81,7 @@ AtomCell diamond_cell(double a) {
 
 AtomCell diamond_block(double a, int nx, int ny, int nz) {
   AtomCell cell;
-  cell.box.edges = a * Vec3(nx, ny, nz).asDiagonal().toDenseMatrix();
+  cell.box.edges = a * diagonal(Vec3(nx, ny, nz));
   cell.box.periodic = {true, true, true};
   const Vec3 corners[4] = {{0, 0, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}};
   for (int i = 0; i < nx; ++i)
@@ -94,7 +96,7 @@ AtomCell diamond_block(double a, int nx, int ny, int nz) {
 AtomCell graphene_sheet(double bond, double thickness, int nx, int ny) {
   AtomCell cell;
   const Vec3 edge(std::sqrt(3) * bond, 3 * bond, thickness);
-  cell.box.edges = Vec3(nx * edge[0], ny * edge[1], thickness).asDiagonal();
+  cell.box.edges = diagonal({nx * edge[0], ny * edge[1], thickness});
   cell.box.periodic = {true, true, false};
   const Vec3 basis[4] = {{0, 0, 0}, {0.5, 1.0 / 6, 0}, {0.5, 0.5, 0}, {0, 2.0 / 3, 0}};
   for (int j = 0; j < ny; ++j)

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/atoms/bond_order/tersoff_forces.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

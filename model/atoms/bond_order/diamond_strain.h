@@ -13,7 +13,7 @@
 #include <unsupported/Eigen/AutoDiff>
 
 #include "model/atoms/bond_order/tersoff_terms.h"
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

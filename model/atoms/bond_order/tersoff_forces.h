@@ -16,6 +16,7 @@
 #include "model/atoms/bond_order/bond_list.h"
 #include "model/atoms/bond_order/tersoff_kernel.h"
 #include "model/atoms/bond_order/tersoff_parameters.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

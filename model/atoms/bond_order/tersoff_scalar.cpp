@@ -19,13 +19,13 @@ struct Bond {
 std::vector<Bond> bonds_of(const Tersoff& tersoff, const TersoffSweep& sweep, size_t atom) {
   const BondList& list = *sweep.list;
   const size_t lanes = list.lanes(), group = atom / lanes;
-  const Eigen::Map<const Vec3> home(sweep.x + 4 * atom);
+  const Vec3 home(sweep.x + 4 * atom);
   std::vector<Bond> bonds;
   for (size_t row = list.first_row()[group]; row < list.first_row()[group + 1]; ++row) {
     const size_t slot = row * lanes + atom % lanes;
     std::fill_n(sweep.partial + 4 * slot, 4, 0.0);
     const double* const other = sweep.x + list.entry()[slot];
-    const Vec3 d = Eigen::Map<const Vec3>(other) - home;
+    const Vec3 d = Vec3(other) - home;
     const double r = d.norm();
     if (r > 0 && r < tersoff.cutoff())
       bonds.push_back({d / r, Vec3::Zero(), r, static_cast<size_t>(other[3]), slot});
@@ -86,11 +86,11 @@ void tersoff_scalar_partials(const Tersoff& tersoff, const TersoffSweep& sweep, 
     Vec3 force = Vec3::Zero();
     Mat3 virial = Mat3::Zero();
     for (const Bond& bond : bonds) {
-      Eigen::Map<Vec3>(sweep.partial + 4 * bond.slot) = bond.partial;
+      std::ranges::copy(bond.partial, sweep.partial + 4 * bond.slot);
       force += bond.partial;
       virial += bond.r * bond.unit * bond.partial.transpose();
     }
-    Eigen::Map<Vec3>(sweep.force + 4 * atom) = force;
+    std::ranges::copy(force, sweep.force + 4 * atom);
     sweep.force[4 * atom + 3] = 0;
     if (sweep.energy == nullptr) continue;
     sweep.energy[atom] = energy;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -186,7 +187,7 @@ std::vector<Vec3> CoarseGrain::linear_mean(std::span<const Vec3> u) const {
     moments.topLeftCorner(size, size).setZero();
     const auto row = [&](uint64_t e) {
       Eigen::Vector4d r(1, 0, 0, 0);
-      r.segment(1, points_.dimensions) = away_[e].head(points_.dimensions) / points_.radius;
+      r.segment(1, points_.dimensions) = eigen(away_[e]).head(points_.dimensions) / points_.radius;
       return r;
     };
     for (uint64_t e = begin(p); e < end(p); ++e)

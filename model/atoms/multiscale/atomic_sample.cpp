@@ -8,6 +8,7 @@
 #include "model/atoms/multiscale/sample_descent.h"
 #include "model/base/atom_units.h"
 #include "model/base/fire.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -20,7 +21,7 @@ class Strained {
   Strained(AtomicForces& forces, const Mat3& cell, const std::vector<Vec3>& place)
       : forces_(forces), cell_(cell), x_(3 * place.size()) {
     for (size_t i = 0; i < place.size(); ++i)
-      x_.segment<3>(static_cast<Eigen::Index>(3 * i)) = cell * place[i];
+      x_.segment<3>(static_cast<Eigen::Index>(3 * i)) = cell * eigen(place[i]);
   }
 
   VectorXd& x() { return x_; }

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "model/base/vec.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "model/base/error.h"
+#include "model/base/mat3.h"
 #include "model/base/parallel.h"
 #include "model/body/random_turn.h"
 #include "model/solid/moduli.h"
@@ -24,7 +25,7 @@ Mat3 edges_of(const std::array<ElementMesh::Corner, 4>& element, const std::vect
               const Vec3& period) {
   const Vec3 origin = corner_place(element[0], x, period);
   Mat3 out;
-  for (int k = 0; k < 3; ++k) out.col(k) = corner_place(element[k + 1], x, period) - origin;
+  for (int k = 0; k < 3; ++k) out.col(k) = eigen(corner_place(element[k + 1], x, period) - origin);
   return out;
 }
 

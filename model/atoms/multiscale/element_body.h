@@ -10,6 +10,7 @@
 
 #include "model/atoms/multiscale/element_mesh.h"
 #include "model/atoms/multiscale/sample_relaxer.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 

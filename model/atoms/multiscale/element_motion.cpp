@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "model/atoms/multiscale/element_stiffness.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 namespace {
@@ -21,7 +22,8 @@ Eigen::MatrixXd rigid_motions(const ElementBody& body) {
   std::vector<Eigen::VectorXd> out;
   const auto add = [&](const auto& motion) {
     Eigen::VectorXd v(static_cast<Eigen::Index>(3 * x.size()));
-    for (size_t i = 0; i < x.size(); ++i) v.segment<3>(static_cast<Eigen::Index>(3 * i)) = motion(x[i]);
+    for (size_t i = 0; i < x.size(); ++i)
+      v.segment<3>(static_cast<Eigen::Index>(3 * i)) = eigen(motion(x[i]));
     for (const Eigen::VectorXd& other : out) v -= other.dot(v) * other;
     out.push_back(v.normalized());
   };
@@ -94,7 +96,7 @@ RestResult ElementRest::operator()(ElementBody& body, double force, int most) co
     body.update();
     ++out.iterations;
     for (size_t v = 0; v < body.x().size(); ++v)
-      f.segment<3>(static_cast<Eigen::Index>(3 * v)) = body.force()[v];
+      f.segment<3>(static_cast<Eigen::Index>(3 * v)) = eigen(body.force()[v]);
     out.force = f.cwiseAbs().maxCoeff();
     out.at_rest = out.force <= force;
     if (out.at_rest || out.iterations >= most) return out;

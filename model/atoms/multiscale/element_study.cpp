@@ -13,6 +13,7 @@
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
 #include "model/base/hash.h"
+#include "model/base/mat3.h"
 #include "model/config/file_kind.h"
 
 namespace cuboct {
@@ -133,7 +134,7 @@ ElementMesh read_box(const ConfigTable& table, int grain_cubes, int refine) {
   std::array<int, 3> cubes = cubes_of(table);
   const ConfigValue size = table.at("size");
   const Vec3 extent = size.vector(quantity::length);
-  if (!(extent.array() > 0).all()) size.fail("'size' must be positive along each axis");
+  if (!(extent.minCoeff() > 0)) size.fail("'size' must be positive along each axis");
   const std::array<bool, 3> repeats = table.has("repeats") ? table.axes("repeats") : std::array<bool, 3>{};
   for (size_t a = 0; a < 3; ++a)
     if (repeats[a] && cubes[a] % 2 != 0)
@@ -175,7 +176,7 @@ Mat3 orientation_of(const ConfigTable& table) {
   const Vec3 across = up.cross(x);
   if (across.norm() < 1e-6) along.fail("'along' and 'up' are parallel");
   Mat3 lattice;  // columns: where x, y, z of space lie in the lattice
-  lattice << x, across.normalized(), x.cross(across.normalized());
+  lattice << eigen(x), eigen(across.normalized()), eigen(x.cross(across.normalized()));
   return lattice.transpose();
 }
 

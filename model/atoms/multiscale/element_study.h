@@ -10,6 +10,7 @@
 #include "model/atoms/multiscale/element_body.h"
 #include "model/atoms/multiscale/shell_springs.h"
 #include "model/atoms/multiscale/wave.h"
+#include "model/base/mat3.h"
 #include "model/base/places.h"
 
 namespace cuboct {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "model/atoms/multiscale/atomic_sample.h"
+#include "model/base/mat3.h"
 #include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/atoms/multiscale/sample_material.h"
+#include "model/base/mat3.h"
 
 namespace cuboct {
 
