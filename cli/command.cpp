@@ -14,28 +14,26 @@
 namespace cuboct {
 
 void Input::add_to(Command& command) {
-  command.option("scene", scene, "scene file (TOML)").required().type_name("SCENE");
-  command.option("--arch", arch, "machine description (TOML)").type_name("FILE");
+  command.option("scene", scene, "scene file (TOML)", "SCENE").required();
+  command.option("--arch", arch, "machine description (TOML)", "FILE");
 }
 
 void Input::add_start_to(Command& command) {
-  command.option("--stage", stage, "of a scene with [[stage]]: the one to take").type_name("NAME");
-  command.option("--from", from, "directory of a run: begin with the last state that it left")
-      .type_name("DIR");
+  command.option("--stage", stage, "of a scene with [[stage]]: the one to take", "NAME");
+  command.option("--from", from, "directory of a run: begin with the last state that it left", "DIR");
 }
 
 void Input::add_stalls_to(Command& command) {
   command
       .option("--stall-rate", stall_rate,
-              "share of cycles in which a link of systemc or rtl passes nothing: cycles change, bits do not")
-      .range(0.0, 0.99)
-      .type_name("R");
-  command.option("--stall-seed", stall_seed, "seed of the stalls").check(whole_number).type_name("N");
-  command
-      .option("--inject-faults", faults,
-              "change, lose or repeat beats on the links of systemc or rtl: their share, or their number")
-      .type_name("X");
-  command.option("--fault-seed", fault_seed, "seed of the faults").check(whole_number).type_name("N");
+              "share of cycles in which a link of systemc or rtl passes nothing: cycles change, bits do not",
+              "R")
+      .range(0.0, 0.99);
+  command.option("--stall-seed", stall_seed, "seed of the stalls", "N").check(whole_number);
+  command.option("--inject-faults", faults,
+                 "change, lose or repeat beats on the links of systemc or rtl: their share, or their number",
+                 "X");
+  command.option("--fault-seed", fault_seed, "seed of the faults", "N").check(whole_number);
 }
 
 std::string whole_number(const std::string& text) {

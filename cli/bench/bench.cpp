@@ -107,21 +107,17 @@ int bench(const Options& options) {
 void add_bench(Command& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   Command command = add_command(app, "bench");
-  command.option("name", options->name, "a benchmark, or the first words of some; default: all")
-      .type_name("NAME");
+  command.option("name", options->name, "a benchmark, or the first words of some; default: all", "NAME");
   command.flag("--list", options->list, "name the benchmarks");
   options->answer.add_to(command);
-  command.option("--threads", options->threads, "threads of 'all cores'; default: every core")
-      .range(1, 4096)
-      .type_name("N");
-  command.option("--repeats", options->length.repeats, "of which the median is told")
+  command.option("--threads", options->threads, "threads of 'all cores'; default: every core", "N")
+      .range(1, 4096);
+  command.option("--repeats", options->length.repeats, "of which the median is told", "N")
       .range(1, 1000)
-      .show_default()
-      .type_name("N");
-  command.option("--seconds", options->length.seconds, "length of a repeat, but where steps are given")
+      .show_default();
+  command.option("--seconds", options->length.seconds, "length of a repeat, but where steps are given", "T")
       .range(1e-3, 1e4)
-      .show_default()
-      .type_name("T");
+      .show_default();
   command.callback([options, &exit_code] { exit_code = bench(*options); });
 }
 

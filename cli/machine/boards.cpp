@@ -184,22 +184,19 @@ void add_boards(Command& app, int& exit_code) {
   Command command = add_command(app, "boards");
   options->input.add_to(command);
   options->input.add_start_to(command);
-  command.option("--device", options->device, "FPGA to fill; a node is synthesised for it").type_name("NAME");
-  command.option("--nodes", options->nodes, "nodes that a device holds, instead of --device")
-      .check(whole_number)
-      .type_name("N");
-  command.option("--box", options->box, "nodes of a device along x, y and z: this box alone")
+  command.option("--device", options->device, "FPGA to fill; a node is synthesised for it", "NAME");
+  command.option("--nodes", options->nodes, "nodes that a device holds, instead of --device", "N")
+      .check(whole_number);
+  command.option("--box", options->box, "nodes of a device along x, y and z: this box alone", "X,Y,Z")
       .delimiter(',')
-      .length(3)
-      .type_name("X,Y,Z");
-  command.option("--link", options->link, "kind of link between devices").type_name("KIND").show_default();
-  command.option("--links", options->links, "file of kinds; default: the built-in ones").type_name("FILE");
-  command.option("--clock", options->clock, "of the machine").type_name("F").show_default();
-  command.option("--most", options->most, "devices at the most").check(whole_number).type_name("N");
-  command.option("--steps", options->steps, "steps to count; default: 20, fewer if very many particles")
-      .check(whole_number)
-      .type_name("N");
-  command.option("--write", options->write, "writes the arch with [boards] of the fastest").type_name("FILE");
+      .length(3);
+  command.option("--link", options->link, "kind of link between devices", "KIND").show_default();
+  command.option("--links", options->links, "file of kinds; default: the built-in ones", "FILE");
+  command.option("--clock", options->clock, "of the machine", "F").show_default();
+  command.option("--most", options->most, "devices at the most", "N").check(whole_number);
+  command.option("--steps", options->steps, "steps to count; default: 20, fewer if very many particles", "N")
+      .check(whole_number);
+  command.option("--write", options->write, "writes the arch with [boards] of the fastest", "FILE");
   command.flag("--json", options->json, "print one JSON document instead of lines for people");
   command.callback([options, &exit_code] { exit_code = boards(*options); });
 }

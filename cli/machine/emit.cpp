@@ -127,46 +127,39 @@ void add_emit(Command& app, int&) {
   Command command = add_command(app, "emit");
   options->input.add_to(command);
   options->input.add_start_to(command);
-  command.option("--out", options->out, "directory, new or of an earlier emission")
-      .required()
-      .type_name("DIR");
+  command.option("--out", options->out, "directory, new or of an earlier emission", "DIR").required();
   command
       .option("--vector-steps", options->emission.vector_steps,
-              "steps of golden that the project's bench checks")
+              "steps of golden that the project's bench checks", "N")
       .check(whole_number)
-      .type_name("N")
       .show_default();
   command
       .option("--fit", options->fit,
               "choose brick, lanes and pipes so that the scene fits this device in the fewest cycles: up5k, "
-              "hx8k, ecp5-25, ecp5-85 or xc7; takes minutes, and goes on after Ctrl-C")
-      .proposed({"up5k", "hx8k", "ecp5-25", "ecp5-85", "xc7"})
-      .type_name("TARGET");
+              "hx8k, ecp5-25, ecp5-85 or xc7; takes minutes, and goes on after Ctrl-C",
+              "TARGET")
+      .proposed({"up5k", "hx8k", "ecp5-25", "ecp5-85", "xc7"});
   const Option board = command
                            .option("--board", options->emission.board.name,
-                                   "add a top module, pins and a host link: icebreaker or ulx3s")
-                           .proposed({"icebreaker", "ulx3s"})
-                           .type_name("B");
-  command.option("--baud", options->emission.board.baud, "bits per second of the board's serial line")
+                                   "add a top module, pins and a host link: icebreaker or ulx3s", "B")
+                           .proposed({"icebreaker", "ulx3s"});
+  command.option("--baud", options->emission.board.baud, "bits per second of the board's serial line", "N")
       .needs(board)
-      .show_default()
-      .type_name("N");
+      .show_default();
   command
       .flag("--unchecked", options->unchecked,
             "do not check whether the board has room: for the simulator, which runs any size")
       .needs(board);
   command
       .option("--bus", options->emission.board.bus,
-              "add a wrapper with registers and an interrupt: axi4lite or wishbone")
-      .proposed({"axi4lite", "wishbone"})
-      .type_name("BUS");
+              "add a wrapper with registers and an interrupt: axi4lite or wishbone", "BUS")
+      .proposed({"axi4lite", "wishbone"});
   command.flag(
       "--fixed-velocities", options->fixed_velocities,
       "with --board or --bus: the host cannot set the velocities of held and moved types: less area");
-  command
-      .option("--prefix", options->emission.prefix,
-              "begin every name of modules, packages and files with NAME_: two machines stand in one design")
-      .type_name("NAME");
+  command.option(
+      "--prefix", options->emission.prefix,
+      "begin every name of modules, packages and files with NAME_: two machines stand in one design", "NAME");
   options->answer.add_to(command);
   command.callback([options] { emit(*options); });
 }

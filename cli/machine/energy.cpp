@@ -84,26 +84,23 @@ void add_energy(Command& app, int& exit_code) {
   Command command = add_command(app, "energy");
   options->input.add_to(command);
   options->input.add_start_to(command);
-  command.option("--beside", options->beside, "a second machine description, to compare with the first")
-      .type_name("FILE");
+  command.option("--beside", options->beside, "a second machine description, to compare with the first",
+                 "FILE");
   command
       .option("--technology", options->technologies,
-              "one or several, with commas: " + list_of(technology_names()) + ", or files")
+              "one or several, with commas: " + list_of(technology_names()) + ", or files", "NAME")
       .delimiter(',')
       .proposed(technology_names())
-      .show_default("cmos45,cmos7")
-      .type_name("NAME");
+      .show_default("cmos45,cmos7");
   command
       .option("--link", options->link,
-              "links go between chips, by " + list_of(link_names()) + "; default: wires on chip")
-      .proposed(link_names())
-      .type_name("KIND");
-  command.option("--clock", options->clock, "of the machine").type_name("F").show_default();
+              "links go between chips, by " + list_of(link_names()) + "; default: wires on chip", "KIND")
+      .proposed(link_names());
+  command.option("--clock", options->clock, "of the machine", "F").show_default();
   command
       .option("--steps", options->steps,
-              fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps))
-      .check(whole_number)
-      .type_name("N");
+              fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps), "N")
+      .check(whole_number);
   command.flag("--json", options->json, "print one JSON document instead of lines for people");
   command.callback([options, &exit_code] { exit_code = energy(*options); });
 }

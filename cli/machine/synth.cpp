@@ -23,30 +23,23 @@ void add_synth(Command& app, int&) {
   auto options = std::make_shared<Options>();
   synth::Request& request = options->request;
   Command command = add_command(app, "synth");
-  command.option("project", request.directory, "directory that cuboct emit wrote")
-      .required()
-      .type_name("DIR");
-  command.option("--target", request.target, "up5k, hx8k, ecp5-25, ecp5-85, xc7 or asic")
+  command.option("project", request.directory, "directory that cuboct emit wrote", "DIR").required();
+  command.option("--target", request.target, "up5k, hx8k, ecp5-25, ecp5-85, xc7 or asic", "T")
       .proposed({"up5k", "hx8k", "ecp5-25", "ecp5-85", "xc7", "asic"})
-      .required()
-      .type_name("T");
+      .required();
   command
       .option("--unit", request.unit,
-              "node, lattice, board, or one block by its name: pipe, update, fifo#1, ...")
-      .type_name("UNIT")
+              "node, lattice, board, or one block by its name: pipe, update, fifo#1, ...", "UNIT")
       .show_default();
-  command.option("--seed", request.seed, "of the placer").range(0, 1 << 30).type_name("N").show_default();
-  command.option("--freq", request.frequency, "MHz that placing aims at; default: the target's")
-      .range(1.0, 1000.0)
-      .type_name("F");
+  command.option("--seed", request.seed, "of the placer", "N").range(0, 1 << 30).show_default();
+  command.option("--freq", request.frequency, "MHz that placing aims at; default: the target's", "F")
+      .range(1.0, 1000.0);
   command.flag("!--no-place", request.place, "stop at the netlist: resources without Fmax and bitstream");
-  command.option("--timing", request.timing, "nextpnr's report, made elsewhere from the netlist that is here")
-      .type_name("FILE");
-  command.option("--liberty", request.liberty, "asic: standard cells; default: Debian's osu018")
-      .type_name("FILE");
-  command.option("--activity", request.activity, "asic: changes of each net per clock, for the power")
+  command.option("--timing", request.timing, "nextpnr's report, made elsewhere from the netlist that is here",
+                 "FILE");
+  command.option("--liberty", request.liberty, "asic: standard cells; default: Debian's osu018", "FILE");
+  command.option("--activity", request.activity, "asic: changes of each net per clock, for the power", "A")
       .range(0.0, 2.0)
-      .type_name("A")
       .show_default();
   command.flag("-q,--quiet", options->quiet, "nothing on stderr but errors: no line for each stage");
   options->answer.add_to(command);

@@ -325,22 +325,19 @@ void add_crosscheck(Command& app, int& exit_code) {
       .option("--engines", options->engines,
               "which ones; default: golden,lattice,systemc,rtl; golden,lattice of a rule of text, or in a "
               "box that no "
-              "cube divides")
+              "cube divides",
+              "A,B,...")
       .delimiter(',')
-      .proposed(engines_that([](auto&) { return true; }))
-      .type_name("A,B,...");
+      .proposed(engines_that([](auto&) { return true; }));
   command
       .option("--precision", options->choice.precision,
               "float (default) or double: the numbers of gpu against reference, within bounds")
       .one_of({"float", "double"});
-  command.option("--steps", options->steps, "steps; default: the scene's")
+  command.option("--steps", options->steps, "steps; default: the scene's", "N")
       .check(whole_number)
-      .type_name("N")
       .given(options->steps_given);
-  command
-      .option("--out", options->out,
-              "directory that keeps each engine's trace; of a scene of stages, a directory each")
-      .type_name("DIR");
+  command.option("--out", options->out,
+                 "directory that keeps each engine's trace; of a scene of stages, a directory each", "DIR");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = crosscheck(*options); });
 }

@@ -68,15 +68,12 @@ std::string csv_of(const Scene& scene, const std::vector<Curve>& curves) {
 void add_curves(Command& app, int&) {
   auto options = std::make_shared<CurvesOptions>();
   Command command = add_command(app, "curves");
-  command.option("directory", options->directory, "what 'cuboct run --out' wrote")
-      .required()
-      .type_name("DIR");
+  command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command
       .option("--probe", options->names,
-              "one or several, with commas: probes, or their curves; default: all curves")
-      .delimiter(',')
-      .type_name("NAME");
-  command.option("--out", options->out, "the CSV file; default: to the terminal").type_name("FILE");
+              "one or several, with commas: probes, or their curves; default: all curves", "NAME")
+      .delimiter(',');
+  command.option("--out", options->out, "the CSV file; default: to the terminal", "FILE");
   command.callback([options] { write_curves(*options); });
 }
 

@@ -27,28 +27,21 @@ std::string the_engines(const std::vector<std::string>& names) {
 void EngineOptions::add_machines(Command& command) {
   command
       .option("--threads", threads,
-              "threads of lattice, systemc, rtl or reference; default: as many as suit the scene")
-      .range(1, 4096)
-      .type_name("N");
-  command.option("--ranks", ranks, "processes of lattice, over MPI").range(1, 65536).type_name("N");
-  const Option list =
-      command.option("--devices", devices, "devices of gpu by CUDA's ordinals, one per part of the scene")
-          .delimiter(',')
-          .range(0, 1023)
-          .type_name("A,B,...");
-  command.option("--gpus", gpus, "the first N devices of gpu; default: one")
-      .range(1, 64)
-      .excludes(list)
-      .type_name("N");
-  command.option("--port", port, "serial port of fpga's board, e.g. /dev/ttyUSB0").type_name("P");
-  command.option("--baud", baud, "bits per second on it; default: 1000000")
-      .range(300, 12000000)
-      .type_name("N");
+              "threads of lattice, systemc, rtl or reference; default: as many as suit the scene", "N")
+      .range(1, 4096);
+  command.option("--ranks", ranks, "processes of lattice, over MPI", "N").range(1, 65536);
+  const Option list = command
+                          .option("--devices", devices,
+                                  "devices of gpu by CUDA's ordinals, one per part of the scene", "A,B,...")
+                          .delimiter(',')
+                          .range(0, 1023);
+  command.option("--gpus", gpus, "the first N devices of gpu; default: one", "N").range(1, 64).excludes(list);
+  command.option("--port", port, "serial port of fpga's board, e.g. /dev/ttyUSB0", "P");
+  command.option("--baud", baud, "bits per second on it; default: 1000000", "N").range(300, 12000000);
   command
       .option("--port-timeout", timeout,
-              "seconds without an answer after which fpga asks the board again; default: 0.3")
-      .range(0.001, 60.0)
-      .type_name("T");
+              "seconds without an answer after which fpga asks the board again; default: 0.3", "T")
+      .range(0.001, 60.0);
   command
       .option(
           "--rule-code", rule_code,
@@ -75,16 +68,15 @@ void EngineOptions::add_run(Command& command) {
   command.flag("--joules", joules, "measure the energy of gpu's devices, which rest for two seconds first");
   command
       .option("--hash-every", hash_every,
-              "steps between two hashes of the state; default: 100 of lattice and gpu, none of fpga, else 1")
+              "steps between two hashes of the state; default: 100 of lattice and gpu, none of fpga, else 1",
+              "K")
       .range(uint64_t{1}, uint64_t{1} << 62)
-      .type_name("K")
       .given(hashes_given);
   command.flag("--cycles", cycles, "count the machine's cycles in lattice");
-  command
-      .option("--checkpoint-every", checkpoint_every,
-              "'1000 steps', '30 s', '5 min' or '2 h': how often an engine other than systemc and rtl "
-              "leaves a checkpoint in DIR")
-      .type_name("T");
+  command.option("--checkpoint-every", checkpoint_every,
+                 "'1000 steps', '30 s', '5 min' or '2 h': how often an engine other than systemc and rtl "
+                 "leaves a checkpoint in DIR",
+                 "T");
   command.flag("--resume", resume, "go on from the checkpoint in DIR");
 }
 

@@ -77,49 +77,44 @@ void add_measure(Command& app, int&) {
   auto options = std::make_shared<MeasureOptions>();
   MeasureAsked& asked = options->asked;
   Command command = add_command(app, "measure");
-  command.option("directory", options->directory, "what 'cuboct run --out' wrote")
-      .required()
-      .type_name("DIR");
+  command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command
       .option("measure", asked.name,
               "rdf (radial distribution), msd (mean squared displacement), coordination, cna (common "
-              "neighbours: fcc, hcp, bcc, icosahedral) or stress (of the virial)")
+              "neighbours: fcc, hcp, bcc, icosahedral) or stress (of the virial)",
+              "WHAT")
       .required()
-      .type_name("WHAT")
       .proposed(measure_names());
-  command
-      .option("--frames", asked.frames,
-              "all, half (the second), last, steps as 0,500, or from one step to another as 100:900; "
-              "default: half for rdf, else all")
-      .type_name("FRAMES");
-  command
-      .option("--cutoff", options->cutoff,
-              "a length. rdf: where g(r) ends, by default 4.1 pitches; coordination: who is a neighbour, by "
-              "default between first and second shell; cna: by default none, it adapts")
-      .type_name("LENGTH");
-  command.option("--bins", options->bins, "of rdf; default: 200")
+  command.option("--frames", asked.frames,
+                 "all, half (the second), last, steps as 0,500, or from one step to another as 100:900; "
+                 "default: half for rdf, else all",
+                 "FRAMES");
+  command.option(
+      "--cutoff", options->cutoff,
+      "a length. rdf: where g(r) ends, by default 4.1 pitches; coordination: who is a neighbour, by "
+      "default between first and second shell; cna: by default none, it adapts",
+      "LENGTH");
+  command.option("--bins", options->bins, "of rdf; default: 200", "N")
       .range(uint64_t{1}, kMostBins)
-      .type_name("N")
       .given(options->bins_given);
   command
       .option(
           "--types", asked.choice.types,
-          "materials. rdf: those of B about those of A; other measures count their particles; default: all")
-      .delimiter(',')
-      .type_name("A,B");
-  command
-      .option("--volume", options->volume,
-              "what densities and stresses are over; default: the periodic box, of other bodies that of the "
-              "particles as packed")
-      .type_name("VOLUME");
+          "materials. rdf: those of B about those of A; other measures count their particles; default: all",
+          "A,B")
+      .delimiter(',');
+  command.option(
+      "--volume", options->volume,
+      "what densities and stresses are over; default: the periodic box, of other bodies that of the "
+      "particles as packed",
+      "VOLUME");
   command.flag("--com", asked.choice.com, "msd without the motion of the centre of mass");
   command.flag("--virial", asked.choice.virial, "stress without its kinetic part");
-  command
-      .option("--particles", options->particles,
-              "what each particle has, by frames: .csv, .xyz, .xyz.gz, .dump.gz (LAMMPS) or .pvd (ParaView)")
-      .type_name("FILE");
-  command.option("--out", options->out, "the CSV file; default: to the terminal").type_name("FILE");
-  command.option("--threads", options->threads, "default: one per core").range(1, 4096).type_name("N");
+  command.option(
+      "--particles", options->particles,
+      "what each particle has, by frames: .csv, .xyz, .xyz.gz, .dump.gz (LAMMPS) or .pvd (ParaView)", "FILE");
+  command.option("--out", options->out, "the CSV file; default: to the terminal", "FILE");
+  command.option("--threads", options->threads, "default: one per core", "N").range(1, 4096);
   options->answer.add_to(command);
   command.callback([options] { measure(*options); });
 }

@@ -90,11 +90,10 @@ const std::string& template_text(const std::string& name) { return template_of(n
 void add_new(Command& app, int&) {
   auto options = std::make_shared<NewOptions>();
   Command command = add_command(app, "new");
-  command.option("name", options->name, "the file, NAME.toml").type_name("NAME");
-  command.option("--like", options->like, "what it shows: see --list")
+  command.option("name", options->name, "the file, NAME.toml", "NAME");
+  command.option("--like", options->like, "what it shows: see --list", "TEMPLATE")
       .proposed(template_names())
-      .show_default()
-      .type_name("TEMPLATE");
+      .show_default();
   command.flag("--list", options->list, "tell what templates there are");
   options->answer.add_to(command);
   command.flag("--force", options->force, "replace a file of that name");

@@ -78,29 +78,23 @@ void draw(const PictureOptions& options) {
 void add_picture(Command& app, int&) {
   auto options = std::make_shared<PictureOptions>();
   Command command = add_command(app, "picture");
-  command.option("directory", options->directory, "what 'cuboct run --out' wrote")
-      .required()
-      .type_name("DIR");
-  command.option("--out", options->out, "the PNG file; default: DIR/picture.png").type_name("FILE");
+  command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
+  command.option("--out", options->out, "the PNG file; default: DIR/picture.png", "FILE");
   command.option("--field", options->field, "strain, speed, thickness or broken (bonds)")
       .proposed({"strain", "speed", "thickness", "broken"})
       .show_default();
   command
       .option("--steps", options->steps,
-              "frames to draw, by their steps; default: first, last and two between")
+              "frames to draw, by their steps; default: first, last and two between", "N,...")
       .delimiter(',')
-      .check(whole_number)
-      .type_name("N,...");
+      .check(whole_number);
   command
       .option("--limit", options->limit,
               "where the colours end: strain (0.01 is 1 %), m/s, m or bonds; default: the 90th "
-              "percentile of all frames")
-      .check(above_zero)
-      .type_name("V");
-  command.option("--width", options->width, "pixels of the picture")
-      .range(400, 16384)
-      .show_default()
-      .type_name("PX");
+              "percentile of all frames",
+              "V")
+      .check(above_zero);
+  command.option("--width", options->width, "pixels of the picture", "PX").range(400, 16384).show_default();
   options->answer.add_to(command);
   command.callback([options] { draw(*options); });
 }

@@ -414,10 +414,10 @@ void add_report(Command& app, int&) {
   command
       .option("directory", options->directory,
               "what 'cuboct run --out' wrote; traces in its folder "
-              "'crosscheck' join the table of engines")
-      .required()
-      .type_name("DIR");
-  command.option("--out", options->out, "the HTML file; default: DIR/report.html").type_name("FILE");
+              "'crosscheck' join the table of engines",
+              "DIR")
+      .required();
+  command.option("--out", options->out, "the HTML file; default: DIR/report.html", "FILE");
   options->answer.add_to(command);
   command.callback([options] { report(options->directory, options->out, options->answer); });
 }

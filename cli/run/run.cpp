@@ -290,36 +290,33 @@ void add_run(Command& app, int& exit_code) {
           "lattice, golden, systemc, rtl, fpga, gpu or reference (doubles or floats); default: lattice, for "
           "static loading reference")
       .proposed(engines_that([](auto&) { return true; }));
-  command.option("--steps", options->steps, "steps; default: the scene's")
+  command.option("--steps", options->steps, "steps; default: the scene's", "N")
       .check(whole_number)
-      .type_name("N")
       .given(options->steps_given);
   command
       .option("--frame-every", options->frame_every,
-              "keep every K-th state; default: the scene's; 0: first and last")
+              "keep every K-th state; default: the scene's; 0: first and last", "K")
       .check(whole_number)
-      .type_name("K")
       .given(options->frames_given);
   command
       .option("--frames", options->frames,
               "formats of the frames in DIR, written as they come: xyz, xyz.gz, ase "
-              "(frames.ase.xyz), vtp, lammps (frames.dump.gz), or none; default: xyz,vtp")
+              "(frames.ase.xyz), vtp, lammps (frames.dump.gz), or none; default: xyz,vtp",
+              "A,B,...")
       .delimiter(',')
       .one_word()
       .one_of({"xyz", "xyz.gz", "ase", "vtp", "lammps", "none"})
-      .type_name("A,B,...")
       .given(options->formats_given);
   options->engines.add_machines(command);
   options->engines.add_numbers(command);
   options->engines.add_run(command);
-  command.option("--out", options->out, "directory for trace, frames, plan and summary").type_name("DIR");
+  command.option("--out", options->out, "directory for trace, frames, plan and summary", "DIR");
   command.flag("--force", options->force, "begin anew in a DIR whose run did not end, in its place");
   command
       .option("--raster", options->raster,
-              "pixels along the body of the pictures that DIR keeps of its frames")
+              "pixels along the body of the pictures that DIR keeps of its frames", "PX")
       .range(16u, 16384u)
       .show_default()
-      .type_name("PX")
       .given(options->raster_given);
   command.flag("--no-states", options->no_states,
                "of the frames, DIR keeps rasters.h5 alone: for bodies of millions of particles");

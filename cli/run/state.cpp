@@ -68,17 +68,13 @@ void save(const StateOptions& options) {
 void add_state(Command& app, int&) {
   auto options = std::make_shared<StateOptions>();
   Command command = add_command(app, "state");
-  command.option("directory", options->directory, "what 'cuboct run --out' wrote")
-      .required()
-      .type_name("DIR");
+  command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command
       .option("--out", options->out,
-              "the file: extended XYZ, all digits kept, which [particles] of a scene reads")
-      .required()
-      .type_name("FILE");
-  command.option("--step", options->step, "the step of a frame that the run kept; default: the last")
-      .check(whole_number)
-      .type_name("N");
+              "the file: extended XYZ, all digits kept, which [particles] of a scene reads", "FILE")
+      .required();
+  command.option("--step", options->step, "the step of a frame that the run kept; default: the last", "N")
+      .check(whole_number);
   options->answer.add_to(command);
   command.callback([options] { save(*options); });
 }

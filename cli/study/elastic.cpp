@@ -201,26 +201,22 @@ int elastic(const ElasticOptions& options) {
 void add_elastic(Command& app, int& exit_code) {
   auto options = std::make_shared<ElasticOptions>();
   Command command = add_command(app, "elastic");
-  command.option("scene", options->scene, "scene file (TOML)").type_name("SCENE");
-  command.option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]")
-      .type_name("KEYS");
-  command.option("--pitch", options->pitch, "of --law: distance of nearest particles, or relaxed")
-      .type_name("P");
-  command.option("--density", options->density, "of --law, with its unit").type_name("D");
+  command.option("scene", options->scene, "scene file (TOML)", "SCENE");
+  command.option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]",
+                 "KEYS");
+  command.option("--pitch", options->pitch, "of --law: distance of nearest particles, or relaxed", "P");
+  command.option("--density", options->density, "of --law, with its unit", "D");
   command.flag("--reduced", options->reduced, "quantities of --law are plain numbers, the mass is 1");
-  command.option("--material", options->material, "of a scene whose box does not repeat; default: the first")
-      .type_name("NAME");
+  command.option("--material", options->material, "of a scene whose box does not repeat; default: the first",
+                 "NAME");
   command.flag("--relaxed", options->relaxed, "first strain the cell until it carries no stress");
-  command.option("--strain", options->strain, "of the strained simulations").type_name("E").show_default();
-  command.option("--layers", options->layers, "also the modulus along x of slabs of 2 to N layers across z")
-      .range(2, kMostLayers)
-      .type_name("N");
+  command.option("--strain", options->strain, "of the strained simulations", "E").show_default();
   command
-      .option("--polar", options->polar, "draw Young's modulus against direction in the x-y plane (svg, png)")
-      .type_name("FILE");
-  command.option("--threads", options->threads, "of the simulations; default: 1")
-      .range(1, 4096)
-      .type_name("N");
+      .option("--layers", options->layers, "also the modulus along x of slabs of 2 to N layers across z", "N")
+      .range(2, kMostLayers);
+  command.option("--polar", options->polar,
+                 "draw Young's modulus against direction in the x-y plane (svg, png)", "FILE");
+  command.option("--threads", options->threads, "of the simulations; default: 1", "N").range(1, 4096);
   command.flag("--json", options->json, "print as JSON");
   command.callback([options, &exit_code] { exit_code = elastic(*options); });
 }

@@ -112,18 +112,17 @@ void add_explore(Command& app, int& exit_code) {
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".study");
   add_jobs_to(command, options->jobs, "points computed at once");
-  command.option("--add", options->add, "results of the same study from elsewhere").type_name("FILE");
-  command
-      .option("--error", options->error,
-              "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01")
-      .type_name("E");
-  command.option("--figure", options->figure, "the figure of --error").type_name("NAME");
+  command.option("--add", options->add, "results of the same study from elsewhere", "FILE");
+  command.option(
+      "--error", options->error,
+      "instead: the cheapest settings of [search] that keep a figure's error within E, as 1% or 0.01", "E");
+  command.option("--figure", options->figure, "the figure of --error", "NAME");
   command.flag("--no-speed", options->no_speed, "measure errors alone");
   command.flag(
       "--best", options->best,
       "of a study of machines: choose the one that keeps all constraints and has the least of what is "
       "minimised");
-  command.option("--emit", options->emit, "write the RTL project of that machine").type_name("DIR");
+  command.option("--emit", options->emit, "write the RTL project of that machine", "DIR");
   command.flag("--confirm", options->confirm, "synthesise the machine before it is chosen");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = explore(*options); });

@@ -116,22 +116,20 @@ void add_multiscale(Command& app, int& exit_code) {
   Command command = add_command(app, "multiscale");
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".multiscale");
-  command.option("--threads", options->threads, "they change no bit; default: one per core")
-      .range(1, 4096)
-      .type_name("N");
+  command.option("--threads", options->threads, "they change no bit; default: one per core", "N")
+      .range(1, 4096);
   command.flag("--gpu", options->gpu,
                "relax samples on the first GPU: pays from some 400,000 relaxations on");
   command
       .option("--technology", options->technologies,
               "also count a node for each element, in joules of these: " + list_of(technology_names()) +
-                  ", or files")
+                  ", or files",
+              "NAME")
       .delimiter(',')
-      .proposed(technology_names())
-      .type_name("NAME");
-  command.option("--clock", options->clock, "of the node").type_name("F").show_default();
-  command.option("--fraction", options->fraction, "bits behind the point of the node's numbers")
+      .proposed(technology_names());
+  command.option("--clock", options->clock, "of the node", "F").show_default();
+  command.option("--fraction", options->fraction, "bits behind the point of the node's numbers", "BITS")
       .range(10, 40)
-      .type_name("BITS")
       .show_default();
   options->answer.add_to(command);
   command.callback([options, &exit_code] { multiscale(*options), exit_code = 0; });

@@ -164,29 +164,24 @@ int find(const PitchOptions& options) {
 void add_pitch(Command& app, int& exit_code) {
   auto options = std::make_shared<PitchOptions>();
   Command command = add_command(app, "pitch");
-  command.option("scene", options->scene, "scene file (TOML)").required().type_name("SCENE");
-  command.option("--error", options->error, "wanted, of the figure, as 5% or 0.05")
-      .show_default()
-      .type_name("E");
+  command.option("scene", options->scene, "scene file (TOML)", "SCENE").required();
+  command.option("--error", options->error, "wanted, of the figure, as 5% or 0.05", "E").show_default();
   command
       .option("--figure", options->figure,
-              "modulus, strength, frequency, break_time, mean or final; default: modulus")
-      .proposed({"modulus", "strength", "frequency", "break_time", "mean", "final"})
-      .type_name("KIND");
-  command.option("--curve", options->curve, "of a probe; default: the stress of the only one of its kind")
-      .type_name("CURVE");
-  command.option("--engine", options->engine, "lattice or reference; a static scene is relaxed in doubles")
+              "modulus, strength, frequency, break_time, mean or final; default: modulus", "KIND")
+      .proposed({"modulus", "strength", "frequency", "break_time", "mean", "final"});
+  command.option("--curve", options->curve, "of a probe; default: the stress of the only one of its kind",
+                 "CURVE");
+  command
+      .option("--engine", options->engine, "lattice or reference; a static scene is relaxed in doubles",
+              "NAME")
       .one_of({"lattice", "reference"})
-      .show_default()
-      .type_name("NAME");
-  command.option("--arch", options->arch, "machine (TOML)").type_name("ARCH");
-  command.option("--particles", options->most, "at most so many")
+      .show_default();
+  command.option("--arch", options->arch, "machine (TOML)", "ARCH");
+  command.option("--particles", options->most, "at most so many", "N")
       .range(uint64_t{100}, uint64_t{100'000'000})
-      .show_default()
-      .type_name("N");
-  command.option("--threads", options->threads, "of the host; default: one per core")
-      .range(1, 4096)
-      .type_name("N");
+      .show_default();
+  command.option("--threads", options->threads, "of the host; default: one per core", "N").range(1, 4096);
   add_out_to(command, options->out, "scene", ".pitch");
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = find(*options); });

@@ -246,19 +246,15 @@ void add_stability(Command& app, int&) {
   Command command = add_command(app, "stability");
   options->input.add_to(command);
   options->answer.add_to(command);
-  command.option("--maps", options->maps, "draw maps of stable and unstable runs there").type_name("DIR");
+  command.option("--maps", options->maps, "draw maps of stable and unstable runs there", "DIR");
   command
       .option("--strain", options->strain,
-              "the part of its length that the body is stretched and pressed by; 0: neither")
-      .type_name("E")
+              "the part of its length that the body is stretched and pressed by; 0: neither", "E")
       .show_default();
-  command.option("--axis", options->axis, "of the strain; default: the tensile probe's, or the longest")
-      .proposed({"x", "y", "z"})
-      .type_name("A");
-  command.option("--resolution", options->resolution, "of the measured limits, relative")
-      .type_name("R")
-      .show_default();
-  command.option("--threads", options->threads, "of the engines; default: 1").range(1, 4096).type_name("N");
+  command.option("--axis", options->axis, "of the strain; default: the tensile probe's, or the longest", "A")
+      .proposed({"x", "y", "z"});
+  command.option("--resolution", options->resolution, "of the measured limits, relative", "R").show_default();
+  command.option("--threads", options->threads, "of the engines; default: 1", "N").range(1, 4096);
   command.callback([options] { stability(*options); });
 }
 

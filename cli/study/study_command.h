@@ -19,17 +19,16 @@ namespace cuboct {
 inline constexpr const char* kGoesOn = "interrupted; the same command goes on where it was";
 
 inline void add_study_to(Command& command, std::string& study) {
-  command.option("study", study, "study file (TOML)").required().type_name("STUDY");
+  command.option("study", study, "study file (TOML)", "STUDY").required();
 }
 // `of`: "study", whose name with `ending` the directory has without --out.
 inline void add_out_to(Command& command, std::string& out, const std::string& of, const std::string& ending) {
-  command
-      .option("--out", out,
-              fmt::format("directory for results; default: that of the {}'s name with {}", of, ending))
-      .type_name("DIR");
+  command.option("--out", out,
+                 fmt::format("directory for results; default: that of the {}'s name with {}", of, ending),
+                 "DIR");
 }
 inline void add_jobs_to(Command& command, int& jobs, const std::string& what) {
-  command.option("--jobs", jobs, what + "; default: one per core").range(1, 4096).type_name("N");
+  command.option("--jobs", jobs, what + "; default: one per core", "N").range(1, 4096);
 }
 
 inline std::string out_of(const std::string& out, const std::string& file, const std::string& ending) {

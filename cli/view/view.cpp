@@ -196,58 +196,46 @@ int view(const ViewOptions& options) {
 void add_view(Command& app, int& exit_code) {
   auto options = std::make_shared<ViewOptions>();
   Command command = add_command(app, "view");
-  command.option("run", options->what, "a scene to run, or what 'cuboct run --out' wrote or writes")
-      .required()
-      .type_name("SCENE|DIR");
   command
-      .option("--save", options->save,
-              "write the page as one file that needs no server and no network; of a DIR")
-      .type_name("FILE.html");
-  command
-      .option(
-          "--with", options->with,
-          "of a DIR: beside this run of the same body, with one camera and one time line, and where the two "
-          "first differ")
-      .type_name("DIR");
+      .option("run", options->what, "a scene to run, or what 'cuboct run --out' wrote or writes", "SCENE|DIR")
+      .required();
+  command.option("--save", options->save,
+                 "write the page as one file that needs no server and no network; of a DIR", "FILE.html");
+  command.option(
+      "--with", options->with,
+      "of a DIR: beside this run of the same body, with one camera and one time line, and where the two "
+      "first differ",
+      "DIR");
   command
       .option("--every", options->every,
-              "keep each N-th frame of those that the run kept, and the last; default: all")
-      .range(uint64_t{1}, uint64_t{1} << 40)
-      .type_name("N");
+              "keep each N-th frame of those that the run kept, and the last; default: all", "N")
+      .range(uint64_t{1}, uint64_t{1} << 40);
   command
       .option("--particles", options->particles,
-              "at most N particles of each frame, spread evenly over the ids; default: all")
+              "at most N particles of each frame, spread evenly over the ids; default: all", "N")
       .range(uint64_t{1}, uint64_t{1} << 32)
-      .given(options->particles_given)
-      .type_name("N");
-  command.option("--limit", options->limit, "MB that a saved page may have")
+      .given(options->particles_given);
+  command.option("--limit", options->limit, "MB that a saved page may have", "MB")
       .range(uint64_t{1}, uint64_t{kMostMegabytes})
       .given(options->limit_given)
-      .show_default()
-      .type_name("MB");
-  command.option("--port", options->port, "port of 127.0.0.1; default: a free one")
+      .show_default();
+  command.option("--port", options->port, "port of 127.0.0.1; default: a free one", "N")
       .range(0u, 65535u)
-      .given(options->port_given)
-      .type_name("N");
+      .given(options->port_given);
   command.flag("--no-open", options->no_open, "print the address, and open no browser");
   command.flag("--while-run", options->while_run,
                "of a DIR: end with its run, unless somebody has opened the page");
-  command.option("--arch", options->arch, "of a SCENE: arch file (TOML); default: the defaults")
-      .type_name("FILE");
+  command.option("--arch", options->arch, "of a SCENE: arch file (TOML); default: the defaults", "FILE");
   command.option("--engine", options->engine, "of a SCENE: the engine of its run, as of 'cuboct run'")
       .proposed(engines_that([](auto&) { return true; }));
-  command.option("--steps", options->steps, "of a SCENE: steps; default: the scene's")
-      .check(whole_number)
-      .type_name("N");
+  command.option("--steps", options->steps, "of a SCENE: steps; default: the scene's", "N")
+      .check(whole_number);
   command
       .option("--frame-every", options->frame_every,
-              "of a SCENE: a frame every K steps; default: the scene's, or 40 in all")
-      .check(whole_number)
-      .type_name("K");
-  command
-      .option("--out", options->out,
-              "of a SCENE: keep the run in this directory; default: it goes with the page")
-      .type_name("DIR");
+              "of a SCENE: a frame every K steps; default: the scene's, or 40 in all", "K")
+      .check(whole_number);
+  command.option("--out", options->out,
+                 "of a SCENE: keep the run in this directory; default: it goes with the page", "DIR");
   command.flag("--force", options->force,
                "of a SCENE: begin anew in a DIR whose run did not end, in its place");
   command.flag("--cycles", options->cycles,
@@ -255,9 +243,9 @@ void add_view(Command& app, int& exit_code) {
   command
       .option("--steer", options->steer,
               "of a SCENE: in N parts, so that the page can change imposed velocities from the next part on; "
-              "DIR then holds the scene of stages that gives the same run again")
-      .range(uint64_t{2}, uint64_t{100})
-      .type_name("N");
+              "DIR then holds the scene of stages that gives the same run again",
+              "N")
+      .range(uint64_t{2}, uint64_t{100});
   options->answer.add_to(command);
   command.callback([options, &exit_code] { exit_code = view(*options); });
 }

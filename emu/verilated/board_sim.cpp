@@ -177,9 +177,9 @@ int simulate(const Request& request) {
 int main_of(int argc, char** argv) {
   Request request;
   Command app("cuboct-board-sim", "Simulates an emitted board behind a pseudo-terminal and prints its name");
-  app.option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR', or --bus")
-      .required()
-      .type_name("DIR");
+  app.option("project", request.project, "Directory of 'cuboct emit SCENE --board B --out DIR', or --bus",
+             "DIR")
+      .required();
   app.option("--flip-rate", request.noise.flip, "Chance that a bit on the line is wrong").range(0.0, 1.0);
   app.option("--drop-rate", request.noise.drop, "Chance that a byte is lost").range(0.0, 1.0);
   app.option("--insert-rate", request.noise.insert, "Chance that a byte comes after a byte").range(0.0, 1.0);

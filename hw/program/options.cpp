@@ -89,7 +89,6 @@ std::string told(const std::string& text) {
 Option Option::required() { return Option(option_->required()); }
 Option Option::needs(Option other) { return Option(option_->needs(other.option_)); }
 Option Option::excludes(Option other) { return Option(option_->excludes(other.option_)); }
-Option Option::type_name(const std::string& name) { return Option(option_->type_name(name)); }
 Option Option::show_default() { return Option(option_->capture_default_str()); }
 Option Option::show_default(const std::string& text) { return Option(option_->default_str(text)); }
 Option Option::delimiter(char between) { return Option(option_->delimiter(between)); }
@@ -140,18 +139,21 @@ Command Command::command(const std::string& name, const std::string& description
 void Command::require_command() { app_->require_subcommand(1); }
 
 template <typename Value>
-Option Command::option(const std::string& names, Value& value, const std::string& description) {
-  return Option(app_->add_option(names, value, description));
+Option Command::option(const std::string& names, Value& value, const std::string& description,
+                       const std::string& value_name) {
+  CLI::Option* option = app_->add_option(names, value, description);
+  return Option(value_name.empty() ? option : option->type_name(value_name));
 }
-template Option Command::option(const std::string&, std::string&, const std::string&);
-template Option Command::option(const std::string&, int&, const std::string&);
-template Option Command::option(const std::string&, uint32_t&, const std::string&);
-template Option Command::option(const std::string&, uint64_t&, const std::string&);
-template Option Command::option(const std::string&, double&, const std::string&);
-template Option Command::option(const std::string&, std::optional<uint64_t>&, const std::string&);
-template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&);
-template Option Command::option(const std::string&, std::vector<int>&, const std::string&);
-template Option Command::option(const std::string&, std::vector<uint64_t>&, const std::string&);
+using Text = const std::string&;
+template Option Command::option(Text, std::string&, Text, Text);
+template Option Command::option(Text, int&, Text, Text);
+template Option Command::option(Text, uint32_t&, Text, Text);
+template Option Command::option(Text, uint64_t&, Text, Text);
+template Option Command::option(Text, double&, Text, Text);
+template Option Command::option(Text, std::optional<uint64_t>&, Text, Text);
+template Option Command::option(Text, std::vector<std::string>&, Text, Text);
+template Option Command::option(Text, std::vector<int>&, Text, Text);
+template Option Command::option(Text, std::vector<uint64_t>&, Text, Text);
 
 Option Command::flag(const std::string& names, bool& value, const std::string& description) {
   return Option(app_->add_flag(names, value, description));

@@ -27,8 +27,7 @@ class Option {
   Option needs(Option other);
   Option excludes(Option other);
 
-  // In help: the name of its value, as "FILE", and what it is without the option: what it is now, or a text.
-  Option type_name(const std::string& name);
+  // In help: what its value is without the option: what it is now, or a text.
   Option show_default();
   Option show_default(const std::string& text);
 
@@ -90,9 +89,11 @@ class Command {
   void require_command();
 
   // `names` as "-v,--verbose", or one without dashes for a word by its place. Value: std::string, int,
-  // uint32_t, uint64_t, double, std::optional<uint64_t>, or std::vector of std::string, int or uint64_t.
+  // uint32_t, uint64_t, double, std::optional<uint64_t>, or std::vector of std::string, int or uint64_t,
+  // which help calls `value_name`, as "FILE", or after its type.
   template <typename Value>
-  Option option(const std::string& names, Value& value, const std::string& description);
+  Option option(const std::string& names, Value& value, const std::string& description,
+                const std::string& value_name = {});
   // "!--no-name" clears the value.
   Option flag(const std::string& names, bool& value, const std::string& description);
 

@@ -165,8 +165,8 @@ void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
   const ProgramAbilities& can = program.abilities;
   app.option("scene", options.scene, "Scene file (TOML)");
   app.option("--scene-path", parsed.scene_path,
-             "The scene's own path, where a copy is read: what it names lies beside it, and errors tell it")
-      .type_name("FILE");
+             "The scene's own path, where a copy is read: what it names lies beside it, and errors tell it",
+             "FILE");
   app.option("--arch", options.arch, "Machine description (TOML); the defaults without one");
   app.option("--stage", options.stage, "Of a scene with [[stage]]: the one to run");
   app.option("--from", options.from, "Directory of a run: this one begins with its last state");
@@ -177,8 +177,8 @@ void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
   app.option("--frame-files", parsed.frame_files,
              "Each state that is kept goes into a file PREFIX.0, PREFIX.1, ... as it comes, none into "
              "the trace, for a reader "
-             "who removes them: the program waits while 16 are there")
-      .type_name("PREFIX");
+             "who removes them: the program waits while 16 are there",
+             "PREFIX");
   app.option("--begun", parsed.begun, "File that is made when the steps begin");
   app.flag("--energies", run.energies, "Measure energies with the probes, and at the last state");
   app.flag("--watch", run.watch, "Look for what makes a run wrong; energies are measured with it");
@@ -198,9 +198,9 @@ void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
   app.flag("--bench", options.bench, "Print 'name value unit' lines; no trace unless --out asks for one");
   app.option("--log", parsed.log,
              "A table on standard error, a row each two 'seconds' or twenty as 'parts' of the run; 'off': a "
-             "line in place on a terminal; 'quiet': not even that")
-      .one_of({"off", "quiet", "seconds", "parts"})
-      .type_name("ROWS");
+             "line in place on a terminal; 'quiet': not even that",
+             "ROWS")
+      .one_of({"off", "quiet", "seconds", "parts"});
   program.add_options(app);
 }
 

@@ -125,14 +125,11 @@ int run(const Request& r) {
 int main(int argc, char** argv) {
   Request r;
   Command app("rtl_random_study", "Random scenes, machines and stalls for the RTL");
-  app.option("--seeds", r.seeds, "A-B, or one")
-      .required()
-      .check([](const std::string& text) {
-        const bool fine = !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos &&
-                          text.front() != '-' && text.back() != '-';
-        return fine ? std::string() : "expected A-B, two numbers, got " + text;
-      })
-      .type_name("A-B");
+  app.option("--seeds", r.seeds, "A-B, or one", "A-B").required().check([](const std::string& text) {
+    const bool fine = !text.empty() && text.find_first_not_of("0123456789-") == std::string::npos &&
+                      text.front() != '-' && text.back() != '-';
+    return fine ? std::string() : "expected A-B, two numbers, got " + text;
+  });
   app.option("--out", r.out, "A line per seed is added to this file").required();
   app.option("--cache", r.cache, "Where nodes are compiled").required();
   app.option("--minutes", r.minutes, "No further seed is begun after these");

@@ -147,7 +147,7 @@ int run_bench(int argc, char** argv, const BenchMachine& machine) {
   Request request;
   BenchOptions& options = request.options;
   Command app("cuboct-gpu bench", "Measures how fast the GPU engines are, and what energy they take");
-  app.option("--only", request.only, "A row, or its first words; all without it").type_name("NAME");
+  app.option("--only", request.only, "A row, or its first words; all without it", "NAME");
   app.flag("--list", request.list, "Name the rows");
   app.option("--devices", options.engine.devices, "GPUs, one per slab: 0,1").delimiter(',').show_default();
   app.option("--block", options.engine.block, "Threads of a block, a multiple of 32 up to 256")

@@ -118,19 +118,16 @@ int run_multiscale(int argc, char** argv) {
       "cuboct-gpu multiscale",
       "Computes a study of elements that carry their atoms, with the samples on a GPU; cuboct multiscale "
       "--gpu starts it");
-  app.option("study", request.study, "Study file (TOML)").required().type_name("STUDY");
+  app.option("study", request.study, "Study file (TOML)", "STUDY").required();
   app.option("--progress", request.progress,
-             "File of results, which a run that was cut goes on from and cuboct multiscale reads")
-      .required()
-      .type_name("FILE");
-  app.option("--point", request.point, "Of the study's [compare]").range(1, 1 << 20).type_name("N");
+             "File of results, which a run that was cut goes on from and cuboct multiscale reads", "FILE")
+      .required();
+  app.option("--point", request.point, "Of the study's [compare]", "N").range(1, 1 << 20);
   app.option("--device", request.device, "CUDA's ordinal").show_default();
-  app.option("--threads", request.threads, "Of the host; they change no bit; default: one per core")
-      .range(1, 4096)
-      .type_name("N");
+  app.option("--threads", request.threads, "Of the host; they change no bit; default: one per core", "N")
+      .range(1, 4096);
   app.option("--status", request.before, "Words before the line of progress on a terminal");
-  app.option("--error", request.error, "File for what went wrong, in place of standard error")
-      .type_name("FILE");
+  app.option("--error", request.error, "File for what went wrong, in place of standard error", "FILE");
   return run_command_line(app, argc, argv, [&] { return run_and_tell(request); });
 }
 
