@@ -249,14 +249,7 @@ class BoardIntegers : public IntegerEngine {
   uint64_t step_count() const override { return run_.step_count(); }
   State state() const override { return run_.state(); }
   uint64_t hash() const override { return hash_of(plan_.lattice, run_.state()); }
-  std::vector<Int3> next_velocities() override {
-    return GoldenIntegers(plan_.program->program, plan_.lattice, plan_.arch.capacity, run_.state(),
-                          plan_.program->rows)
-        .next_velocities();
-  }
-  void for_each_slot(const std::function<void(const Particle&)>& see) const override {
-    for (const Particle& particle : run_.state().particles) see(particle);
-  }
+  std::vector<Int3> next_velocities() override { return golden_of(plan_, run_.state()).next_velocities(); }
   Counters counters() const override { return run_.counters(); }
   std::vector<uint64_t> clocks() const override { return {run_.cycles()}; }
   Notes notes() const override { return run_.notes(); }

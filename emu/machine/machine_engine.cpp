@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "model/program/integer_program.h"
+#include "hw/engine/engine_kind.h"
 
 namespace cuboct::emu {
 namespace {
@@ -75,13 +75,7 @@ const State& MachineRun::state() const {
 }
 
 std::vector<Int3> MachineIntegers::next_velocities() {
-  return GoldenIntegers(plan_.program->program, plan_.lattice, plan_.arch.capacity, run_.state(),
-                        plan_.program->rows)
-      .next_velocities();
-}
-
-void MachineIntegers::for_each_slot(const std::function<void(const Particle&)>& see) const {
-  for (const Particle& particle : run_.state().particles) see(particle);
+  return golden_of(plan_, run_.state()).next_velocities();
 }
 
 }  // namespace cuboct::emu

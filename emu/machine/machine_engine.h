@@ -89,7 +89,6 @@ class MachineIntegers : public IntegerEngine {
   State state() const override { return run_.state(); }
   uint64_t hash() const override { return run_.hash(); }
   std::vector<Int3> next_velocities() override;
-  void for_each_slot(const std::function<void(const Particle&)>& see) const override;
   std::vector<PhaseSpan> phase_times() override { return run_.phase_times(); }
   std::optional<double> seconds() const override { return run_.seconds(); }
   Counters counters() const override { return run_.counters(); }

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "hw/engine/engine_kind.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "hw/plan/state_bounds.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/golden_engine.h"
-#include "model/run/reference_engine.h"
-#include "model/run/static_engine.h"
 
 namespace cuboct {
 namespace {
@@ -76,6 +72,10 @@ std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, Ch
   return integer_run(scene, plan, begin_of(scene, plan, from), make);
 }
 
+GoldenIntegers golden_of(const Plan& plan, const State& state) {
+  return {plan.program->program, plan.lattice, plan.arch.capacity, state, plan.program->rows};
+}
+
 EngineKind golden_kind(const Scene& scene, const Plan& plan) {
   // A plan that was made for doubles has no program.
   if (plan.program == nullptr) refuse_rounds(scene.rule, "the golden engine");
@@ -90,33 +90,6 @@ EngineKind golden_kind(const Scene& scene, const Plan& plan) {
                                           begin_of(scene, plan, from));
   };
   return kind;
-}
-
-EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
-                          double cell_edge) {
-  EngineKind kind;
-  kind.name = "reference";
-  kind.deforms = true;
-  kind.particles = start.size();
-  kind.fixed = kind.keeps_state = false;
-  kind.floats = options.precision == Precision::float32;
-  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
-  kind.initial = [&start](uint32_t id) { return start.x[id]; };
-  // Velocity Verlet's next step needs the forces of the last one, at its half-step velocities.
-  kind.saves = options.integrator == Integrator::semi_implicit_euler;
-  kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
-    if (!from) return std::make_unique<ReferenceEngine>(scene, start, options, cell_edge);
-    return std::make_unique<ReferenceEngine>(scene, saved_body(*from, scene.rule, start, options.precision),
-                                             options, cell_edge, from->head().step);
-  };
-  return kind;
-}
-
-void check_static(const RealOptions& options) {
-  if (options.precision == Precision::float32)
-    throw InputError("static loading is in doubles: --precision float is not for it");
-  if (options.integrator != Integrator::semi_implicit_euler)
-    throw InputError("static loading has no motion to integrate: --integrator is not for it");
 }
 
 }  // namespace cuboct

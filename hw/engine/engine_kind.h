@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a run must know of an engine of a plan, and the two engines that need nothing but the model.
+// What a run must know of an engine of a plan, and the engine that needs nothing but the model.
 #pragma once
 
 #include <string>
@@ -32,10 +32,7 @@ std::unique_ptr<IntegerRun> integer_run(const Scene& scene, const Plan& plan, Ch
                                         const MakeIntegerEngine& make = {});
 
 EngineKind golden_kind(const Scene& scene, const Plan& plan);
-// InputError for floats, or velocity Verlet, which static loading has not.
-void check_static(const RealOptions& options);
-// Without a plan, from `start` instead of the scene's body. `cell_edge`: m, in which speeds are told.
-EngineKind reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
-                          double cell_edge);
+// Golden of a plan with a program: what others ask where they cannot tell by themselves.
+GoldenIntegers golden_of(const Plan& plan, const State& state);
 
 }  // namespace cuboct

@@ -9,8 +9,6 @@
 #include "hw/plan/real_plan.h"
 #include "model/base/error.h"
 #include "model/rules/rounds_rule.h"
-#include "model/run/reference_engine.h"
-#include "model/run/rounds_run.h"
 #include "model/run/static_engine.h"
 
 namespace cuboct {
@@ -101,27 +99,6 @@ EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const Real
   kind.nodes = scene.rule.rounds != nullptr && !scene.loading ? 0 : plan.nodes();
   kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
   return kind;
-}
-
-EngineKind scene_reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
-                                double cell_edge) {
-  if (scene.loading) {
-    check_static(options);
-    return static_kind(scene, start, options.threads, cell_edge);
-  }
-  return scene.rule.rounds != nullptr ? rounds_kind(scene, start, options, cell_edge)
-                                      : reference_kind(scene, start, options, cell_edge);
-}
-
-std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,
-                                        double cell_edge, uint64_t step, const std::vector<uint64_t>& own) {
-  if (scene.loading) {
-    check_static(options);
-    if (own.empty()) return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge);
-    return std::make_unique<StaticEngine>(scene, body, options.threads, cell_edge, step, own);
-  }
-  if (scene.rule.rounds != nullptr) return std::make_unique<RoundsRun>(scene, body, options, cell_edge, step);
-  return std::make_unique<ReferenceEngine>(scene, body, options, cell_edge, step);
 }
 
 }  // namespace cuboct

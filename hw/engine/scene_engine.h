@@ -3,16 +3,12 @@
 // reference engine, but for rules that are text; no other place tells them from motion by a pair law.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "hw/plan/plan.h"
 #include "hw/plan/setup.h"
-#include "model/real/reference.h"
-#include "model/run/engine.h"
-#include "model/run/record.h"
-#include "model/scene/scene.h"
+#include "model/run/reference_kind.h"
 
 namespace cuboct {
 
@@ -38,14 +34,7 @@ std::vector<std::string> engines_to_cross(const Scene& scene, const Arch& arch);
 // Of steps or an interval, as the scene can do them: static loading knows whole load steps.
 uint64_t whole_steps(const Scene& scene, uint64_t steps);
 
-// The reference engine that the scene needs: at rest after each load step, by rounds, or by pairs.
+// As of model/run/reference_kind.h, with the hash of a plan and its nodes.
 EngineKind scene_reference_kind(const Scene& scene, const Plan& plan, const RealOptions& options);
-// Without a plan, from `start` instead of the scene's body. `cell_edge`: m, in which speeds are told.
-EngineKind scene_reference_kind(const Scene& scene, const Body& start, const RealOptions& options,
-                                double cell_edge);
-// The same engine in the state `body` of step `step`. `own`: Engine::memory().own of the engine that left it
-// there; empty: the run begins.
-std::unique_ptr<Engine> scene_reference(const Scene& scene, const Body& body, const RealOptions& options,
-                                        double cell_edge, uint64_t step, const std::vector<uint64_t>& own);
 
 }  // namespace cuboct

@@ -54,7 +54,8 @@ class Engine {
   // and then returns early, after a complete step.
   virtual void advance(uint64_t steps, std::vector<uint64_t>* hashes = nullptr) = 0;
 
-  virtual uint64_t hash() = 0;  // of fixed engines
+  // Of fixed engines.
+  virtual uint64_t hash() { throw std::logic_error("states in real numbers have no hash"); }
   // Frames, readings and counts that need the rounds of a state throw RoundsError (model/rules/rounds_rule.h)
   // where those cannot be run.
   // With `forces`, a frame in real numbers holds the pair forces.

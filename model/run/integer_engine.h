@@ -21,8 +21,10 @@ class IntegerEngine {
   virtual uint64_t hash() const = 0;
   // As Golden's; of processes that share a scene one has them.
   virtual std::vector<Int3> next_velocities() = 0;
-  // Particles by cell, then slot.
-  virtual void for_each_slot(const std::function<void(const Particle&)>& see) const = 0;
+  // Particles by cell, then slot; by id where golden's slots are not kept.
+  virtual void for_each_slot(const std::function<void(const Particle&)>& see) const {
+    for (const Particle& particle : state().particles) see(particle);
+  }
   virtual Counters counters() const { return {}; }
   virtual std::vector<PhaseSpan> phase_times() { return {}; }
   // Of an engine that counts cycles: by node those at which its next step begins, for a checkpoint.

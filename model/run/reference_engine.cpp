@@ -41,8 +41,6 @@ void ReferenceEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
   }
 }
 
-uint64_t ReferenceEngine::hash() { throw std::logic_error("states in real numbers have no hash"); }
-
 RunState ReferenceEngine::frame(bool forces) {
   const Body& body = reference_.body();
   return RealFrame{step_count(), body.x, body.v, forces ? reference_.forces() : std::vector<Vec3>(), body.u};

@@ -24,7 +24,6 @@ class ReferenceEngine : public Engine {
   uint64_t step_count() const override { return reference_.step_count(); }
   // A step in which a position stops being finite takes the state with it.
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
-  uint64_t hash() override;
   RunState frame(bool forces) override;
   Reading read(const Asked& asked) override;
   Momentum momentum() override { return {{}, reference_.momentum()}; }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/run/rounds_run.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -89,8 +87,6 @@ RealEngine& RoundsRun::reference() {
   if (std::exchange(behind_, false)) follow(*engine_);
   return *engine_;
 }
-
-uint64_t RoundsRun::hash() { throw std::logic_error("states in real numbers have no hash"); }
 
 std::vector<Vec3> RoundsRun::forces() { return reference().forces(); }
 
@@ -187,23 +183,6 @@ std::vector<std::pair<std::string, std::vector<double>>> RoundsRun::shown() {
   std::vector<std::vector<double>> values = fields();
   for (size_t k = 0; k < names.size(); ++k) shown.emplace_back(names[k].name, std::move(values[k]));
   return shown;
-}
-
-EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge) {
-  EngineKind kind;
-  kind.name = "reference";
-  kind.deforms = true;
-  kind.particles = start.size();
-  kind.fixed = kind.keeps_state = false;
-  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
-  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
-  kind.saves = options.integrator == Integrator::semi_implicit_euler;
-  kind.make = [&scene, &start, options, cell_edge](CheckpointReader* from, bool) {
-    if (!from) return std::make_unique<RoundsRun>(scene, start, options, cell_edge);
-    return std::make_unique<RoundsRun>(scene, saved_body(*from, scene.rule, start, options.precision),
-                                       options, cell_edge, from->head().step);
-  };
-  return kind;
 }
 
 }  // namespace cuboct

@@ -26,7 +26,6 @@ class RoundsRun : public Engine {
 
   uint64_t step_count() const override { return step_; }
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
-  uint64_t hash() override;
   RunState frame(bool forces) override;
   Reading read(const Asked& asked) override;
   Momentum momentum() override;
@@ -79,8 +78,5 @@ class RoundsRun : public Engine {
 
 // As engines of rounds begin: with bonds, and displacements from anchors where some type is held by force.
 Body completed(const Scene& scene, const Body& start);
-
-// From `start` instead of the scene's body.
-EngineKind rounds_kind(const Scene& scene, const Body& start, const RealOptions& options, double cell_edge);
 
 }  // namespace cuboct

@@ -131,8 +131,6 @@ void StaticEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
   }
 }
 
-uint64_t StaticEngine::hash() { throw std::logic_error("states in real numbers have no hash"); }
-
 RunState StaticEngine::frame(bool forces) {
   const Body& body = balance_.body();
   const RoundsTerms* terms = balance_.reference().terms();
@@ -171,24 +169,6 @@ Notes StaticEngine::notes() {
            fmt::format("static: at each load step {:.2g} of the load is unbalanced at most, where {:.2g} "
                        "is allowed",
                        largest_share_, scene_.loading->tolerance)}};
-}
-
-EngineKind static_kind(const Scene& scene, const Body& start, int threads, double cell_edge) {
-  EngineKind kind;
-  kind.name = "reference";
-  kind.particles = start.size();
-  kind.fixed = kind.keeps_state = false;
-  kind.displaced = std::ranges::any_of(scene.rule.types, &ParticleType::pd);
-  kind.relaxes = true;
-  kind.deforms = true;
-  kind.initial = [&scene](uint32_t id) { return scene.packing().x[id]; };
-  kind.saves = true;
-  kind.make = [&scene, &start, threads, cell_edge](CheckpointReader* from, bool) {
-    if (!from) return std::make_unique<StaticEngine>(scene, start, threads, cell_edge);
-    return std::make_unique<StaticEngine>(scene, saved_body(*from, scene.rule, start, Precision::float64),
-                                          threads, cell_edge, from->head().step, from->head().engine.own);
-  };
-  return kind;
 }
 
 void refuse_deform(const Scene& scene, const std::string& who) {

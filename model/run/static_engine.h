@@ -31,7 +31,6 @@ class StaticEngine : public Engine {
   uint64_t step_count() const override { return step_; }
   // Between two load steps only the count moves.
   void advance(uint64_t steps, std::vector<uint64_t>*) override;
-  uint64_t hash() override;
   RunState frame(bool forces) override;
   Reading read(const Asked& asked) override;
   Momentum momentum() override { return {}; }
@@ -55,9 +54,6 @@ class StaticEngine : public Engine {
   double largest_share_ = 0;     // of the load, of any load step
   double largest_residual_ = 0;  // N, where nothing is loaded
 };
-
-// Of a scene with `loading`, from `start`.
-EngineKind static_kind(const Scene& scene, const Body& start, int threads, double cell_edge);
 
 // InputError where the scene's box deforms, of `who` that knows a box of one size: "the lattice engine".
 void refuse_deform(const Scene& scene, const std::string& who);

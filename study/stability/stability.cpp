@@ -5,16 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "emu/lattice/run.h"
-#include "hw/engine/engine_kind.h"
+#include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
+#include "model/run/reference_engine.h"
 #include "study/sweep/measure_run.h"
 
 namespace cuboct::study {
@@ -157,8 +157,8 @@ Trial try_reference(const Scene& scene, const Method& method, const Judge& judge
   const RealOptions options{
       method.integrator, method.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64,
       method.threads};
-  return watch(*reference_kind(scene, scene.body, options, scene.rule.cutoff()).make(nullptr, false),
-               scene.body, judge, steps);
+  ReferenceEngine engine(scene, scene.body, options, scene.rule.cutoff());
+  return watch(engine, scene.body, judge, steps);
 }
 
 Trial try_lattice(Scene scene, Arch arch, const Method& method, double resolution, double seed,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "model/atoms/bond_order/crystal_rest.h"
+#include "model/run/reference_kind.h"
 #include "model/run/rounds_run.h"
 #include "tests/rules/metal.h"
 #include "tests/support/refused_with.h"
@@ -43,7 +44,8 @@ void expect_work(const Scene& scene) {
   for (uint64_t step = 0; step <= scene.steps; ++step) request.probes.push_back(step);
   request.energies = true;
   const Recorded done =
-      record(scene, rounds_kind(scene, scene.body, {.integrator = Integrator::velocity_verlet}, 1), request);
+      record(scene, scene_reference_kind(scene, scene.body, {.integrator = Integrator::velocity_verlet}, 1),
+             request);
   ASSERT_FALSE(done.trace.stop) << done.trace.stop->text;
   const auto values = [&](const std::string& name) -> const std::vector<double>& {
     for (const Curve& one : done.trace.curves)

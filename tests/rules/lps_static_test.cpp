@@ -11,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/base/output.h"
 #include "model/base/steps.h"
+#include "model/run/reference_kind.h"
 #include "model/run/rounds_run.h"
 #include "model/run/start.h"
 #include "model/run/static_engine.h"
@@ -54,9 +55,7 @@ class Bench {
   std::string path_;
 };
 
-EngineKind kind_of(const Scene& scene) {
-  return scene.loading ? static_kind(scene, scene.body, 1, 1e-3) : rounds_kind(scene, scene.body, {}, 1e-3);
-}
+EngineKind kind_of(const Scene& scene) { return scene_reference_kind(scene, scene.body, {}, 1e-3); }
 
 RunRequest request_of(const Scene& scene) {
   RunRequest request;

@@ -12,7 +12,7 @@
 #include "model/base/error.h"
 #include "model/base/steps.h"
 #include "model/run/reference_engine.h"
-#include "model/run/static_engine.h"
+#include "model/run/reference_kind.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -49,7 +49,7 @@ Recorded run_static(const Scene& scene) {
   RunRequest request;
   request.steps = scene.steps;
   request.frames = {0};
-  return record(scene, static_kind(scene, scene.body, 1, 1), request);
+  return record(scene, scene_reference_kind(scene, scene.body, {}, 1), request);
 }
 
 // No bond is inclined under such a pull but those that stay as long as they were: each row carries its part

@@ -27,7 +27,7 @@ Recorded run_static(const Scene& scene) {
   request.probes = every_so_often(scene.probe_every, scene.steps);
   request.frames = {0};
   request.energies = request.totals = true;
-  return record(scene, static_kind(scene, scene.body, 1, 1), request);
+  return record(scene, scene_reference_kind(scene, scene.body, {}, 1), request);
 }
 
 const Curve& curve(const Recorded& run, const std::string& name) {
@@ -159,7 +159,7 @@ TEST(Static, WithoutLoadStepZeroIsTheBodyAsItBegins) {
 // A sleep is never shorter than it says.
 TEST(Static, HostTimeCountsHowTheBodyCameToRest) {
   const Scene scene = parse_scene(loaded_bar("steps = 100\nstatic = { load_steps = 1 }\n"), "bar");
-  EngineKind kind = static_kind(scene, scene.body, 1, 1);
+  EngineKind kind = scene_reference_kind(scene, scene.body, {}, 1);
   constexpr std::chrono::milliseconds kSleep{20};
   kind.make = [&scene, kSleep](CheckpointReader*, bool) {
     std::this_thread::sleep_for(kSleep);
