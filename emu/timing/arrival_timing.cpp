@@ -2,11 +2,9 @@
 #include "emu/timing/arrival_timing.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "emu/timing/cycles.h"
 #include "emu/timing/phase_spans.h"
-#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 namespace {
@@ -84,52 +82,15 @@ struct ArrivalTiming::Stream {
 };
 
 ArrivalTiming::ArrivalTiming(const Plan& plan, int threads)
-    : plan_(plan),
-      nodes_(plan.lattice.size()),
-      axes_(plan.rule.axes),
-      threads_(threads > 0 ? threads : usable_cores()),
+    : CellTiming(plan, threads, kAnswered),
       shift_(plan.rule.widths.position_frac - plan.rule.widths.filter_frac),
       halo_beats_(plan.words.halo_beats),
-      received_(kReceived + plan.link.latency),
-      neighbour_(nodes_ + 1),
-      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + kAnswered)),
-      links_(plan),
-      count_(nodes_ + 1),
-      final_count_(nodes_),
-      start_(nodes_),
       sent_(nodes_ + 1),
-      scratch_(at(threads_)),
-      events_(nodes_) {
+      scratch_(at(threads_)) {
   for (size_t k = 0; k < 3; ++k) planar_[k] = static_cast<int32_t>(plan.rule.planar[k]);
-  neighbour_[nodes_].fill(nodes_);
-  for (uint32_t n = 0; n < nodes_; ++n)
-    for (int f = 0; f < kFaces; ++f) {
-      const uint32_t near = plan.lattice.neighbour(n, f);
-      neighbour_[n][at(f)] = near == kNoCell ? nodes_ : near;
-    }
   sent_[nodes_].end.fill(kLongAgo);
-  for (auto& cycles : end_) cycles.resize(nodes_);
   for (auto* beats : {&migrate_start_, &migrate_end_})
     for (auto& cycles : *beats) cycles.assign(nodes_ + 1, kLongAgo);
-}
-
-void ArrivalTiming::begin(const CellSlots& slots, std::span<const Leaving> leaving) {
-  if (slots.first.size() != nodes_ + 1) throw std::invalid_argument("slots of another lattice");
-  for (const auto& x : slots.x)
-    if (x.size() < slots.first[nodes_]) throw std::invalid_argument("slots without positions");
-  for (uint32_t n = 0; n < nodes_; ++n) {
-    count_[n] = slots.first[n + 1] - slots.first[n];
-    if (count_[n] > static_cast<uint32_t>(plan_.arch.capacity))
-      throw std::invalid_argument("a cell holds more than its capacity");
-    if (steps_ > 0 && count_[n] != final_count_[n])
-      throw std::invalid_argument("a cell does not hold what the step before left there");
-  }
-  for (const Leaving& l : leaving)
-    if (l.cell >= nodes_ || l.slot >= count_[l.cell]) throw std::invalid_argument("no such particle leaves");
-  std::copy(count_.begin(), count_.end() - 1, final_count_.begin());
-  migration_.plan(final_count_, leaving);
-  if (!links_.any() || !migration_.any()) return;
-  for (int axis = 0; axis < axes_; ++axis) seen_[at(axis)].resize(migration_.departures(axis).size());
 }
 
 // The segments of an axis: own particles before the first, then the halos of the axis before.
@@ -296,23 +257,6 @@ void ArrivalTiming::end_beats(int axis, uint32_t n, int64_t start) {
   migrate_end_[at(axis)][n] = links_.load(n, faces, early ? start - 1 : scanned(axis, n, start), 1);
 }
 
-// The first cycle after SCAN: a cycle for each slot, and loads for what leaves.
-int64_t ArrivalTiming::scanned(int axis, uint32_t n, int64_t start) {
-  if (!migration_.any()) return start;
-  if (!links_.any()) return start + migration_.scan(axis, n);
-  const auto [first, departures] = migration_.departures(axis, n);
-  int64_t now = start, slot = 0;
-  for (size_t k = 0; k < departures.size(); ++k) {
-    const auto& [node, left, face] = departures[k];
-    const int64_t last =
-        links_.load(n, static_cast<uint8_t>(1u << face), now + left - slot, plan_.words.migrate_beats);
-    seen_[at(axis)][first + k] = (links_.cut(n, face) ? links_.seen(n, face) : last + received_) + kAnswered;
-    now = last + 1;
-    slot = int64_t{left} + 1;
-  }
-  return now + migration_.scanned(axis, n).slots - slot;
-}
-
 void ArrivalTiming::take_particles(int axis, uint32_t n) {
   // A phase does not end in the cycle after one that takes a particle.
   int64_t now = migrate_end_[at(axis)][n] + 1, settled = kLongAgo;
@@ -358,32 +302,20 @@ void ArrivalTiming::count_records(uint32_t n) {
 
 void ArrivalTiming::step(const CellSlots& slots, std::span<const Leaving> leaving,
                          std::span<PhaseSpan> spans) {
-  if (!spans.empty() && spans.size() != size_t{nodes_} * kPhases)
-    throw std::invalid_argument("spans of another lattice");
-  begin(slots, leaving);
+  take(slots, leaving, spans);
+  plan_migration(leaving);
   const int64_t work = int64_t{nodes_} + 10 * int64_t{slots.first[nodes_]};
   const int threads = static_cast<int>(
       std::clamp<int64_t>(work / kArrivalWorkPerThread, 1, std::min<int64_t>(threads_, int64_t{nodes_})));
-  const auto for_all = [&](const auto& part) {
-    const auto range = [&](size_t from, size_t to) {
-      for (size_t n = from; n < to; ++n) part(static_cast<uint32_t>(n));
-    };
-    for_each_range(nodes_, 1, range, threads);
-  };
-  for (int axis = 0; axis < axes_; ++axis) for_all([&](uint32_t n) { relay(axis, n); });
-  const int64_t share = std::clamp<int64_t>(int64_t{nodes_} / (16 * threads), 1, 64);
-  for_each_part(static_cast<size_t>((int64_t{nodes_} + share - 1) / share), threads,
-                [&](size_t k, int member) {
-                  const auto first = static_cast<uint32_t>(static_cast<int64_t>(k) * share);
-                  for (uint32_t n = first; n < std::min(nodes_, first + static_cast<uint32_t>(share)); ++n)
-                    exchange_to_update(slots, n, scratch_[at(member)]);
-                });
+  for (int axis = 0; axis < axes_; ++axis) for_all(threads, [&](uint32_t n) { relay(axis, n); });
+  for_all_busy(threads, [&](uint32_t n, int member) { exchange_to_update(slots, n, scratch_[at(member)]); });
   for (int axis = 0; axis < axes_; ++axis) {
-    for_all([&](uint32_t n) { take_particles(axis, n); });
+    for_all(threads, [&](uint32_t n) { take_particles(axis, n); });
     if (axis + 1 < axes_)
-      for_all([&](uint32_t n) { end_beats(axis + 1, n, end_[at(Phase::migrate_x) + at(axis)][n] + 1); });
+      for_all(threads,
+              [&](uint32_t n) { end_beats(axis + 1, n, end_[at(Phase::migrate_x) + at(axis)][n] + 1); });
   }
-  for_all([&](uint32_t n) {
+  for_all(threads, [&](uint32_t n) {
     if (axes_ == 2) end_[at(Phase::migrate_z)][n] = end_[at(Phase::migrate_y)][n];
     count_records(n);
     write_spans(spans, n, start_[n], end_, 1, true, events_[n]);
@@ -394,27 +326,6 @@ void ArrivalTiming::step(const CellSlots& slots, std::span<const Leaving> leavin
     const bool busy = count_[n] > 0;
     counters_.busy += busy, counters_.filtered += busy, counters_.walked += busy;
   }
-}
-
-uint64_t ArrivalTiming::cycles(const CellSlots& slots) const {
-  if (slots.first.size() != nodes_ + 1) throw std::invalid_argument("slots of another lattice");
-  int64_t idle = 0;  // the last node's first cycle of IDLE
-  for (uint32_t n = 0; n < nodes_; ++n)
-    idle = std::max(idle, start_[n] + std::max(1u, slots.first[n + 1] - slots.first[n]));
-  return static_cast<uint64_t>(idle) + 1;
-}
-
-std::vector<uint64_t> ArrivalTiming::starts() const {
-  std::vector<uint64_t> starts(start_.begin(), start_.end());
-  links_.save(starts);
-  return starts;
-}
-
-void ArrivalTiming::resume(std::span<const uint64_t> starts) {
-  if (starts.size() != nodes_ + links_.saved()) throw std::invalid_argument("starts of another lattice");
-  std::copy_n(starts.begin(), nodes_, start_.begin());
-  links_.load_state(starts.subspan(nodes_));
-  steps_ = 0;
 }
 
 }  // namespace cuboct::emu

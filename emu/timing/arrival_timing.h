@@ -8,31 +8,17 @@
 #include <span>
 #include <vector>
 
-#include "emu/timing/device_links.h"
-#include "emu/timing/force_time.h"
-#include "emu/timing/migrate_time.h"
-#include "emu/timing/node_force.h"
-#include "emu/timing/slots.h"
-#include "hw/cost/events.h"
-#include "hw/plan/plan.h"
-#include "model/trace/trace.h"
+#include "emu/timing/cycles.h"
+#include "emu/timing/node_timing.h"
 
 namespace cuboct::emu {
 
-class ArrivalTiming {
+class ArrivalTiming final : public CellTiming {
  public:
-  // As TimingModel's.
   ArrivalTiming(const Plan& plan, int threads);
-  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
-  uint64_t cycles(const CellSlots& slots) const;
-  std::vector<uint64_t> starts() const;
-  void resume(std::span<const uint64_t> starts);
-  std::span<const MachineEvents> events() const { return events_; }
-  const TimingCounters& counters() const { return counters_; }
+  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) override;
 
  private:
-  static constexpr int64_t kLongAgo = INT64_MIN / 4;
-
   // The relay of a node: what asks, what the memories answer, what the links load.
   struct Relay {
     int64_t asked = kLongAgo;     // the last cycle in which it asked, or left a segment
@@ -66,7 +52,6 @@ class ArrivalTiming {
   // Of a streamer: cycles of its registers.
   struct Stream;
 
-  void begin(const CellSlots& slots, std::span<const Leaving> leaving);
   void relay(int axis, uint32_t n);
   void exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch);
   int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch);
@@ -91,31 +76,18 @@ class ArrivalTiming {
     return links_.cut(from, face) ? links_.seen(from, face)
                                   : migrate_end_[static_cast<size_t>(face / 2)][from] + received_;
   }
-  int64_t scanned(int axis, uint32_t n, int64_t start);
   void end_beats(int axis, uint32_t n, int64_t start);
   void take_particles(int axis, uint32_t n);
   uint32_t other(uint32_t n, int face) const { return neighbour_[n][static_cast<size_t>(face)]; }
 
-  const Plan& plan_;
-  const uint32_t nodes_;
-  const int axes_, threads_, shift_;
-  const int64_t halo_beats_, received_;
+  const int shift_;
+  const int64_t halo_beats_;
   std::array<int32_t, 3> planar_{};
-  std::vector<std::array<uint32_t, 6>> neighbour_;  // number `nodes_` where there is none
-  Migration migration_;
-  DeviceLinks links_;
-  std::array<std::vector<int64_t>, 3> seen_;  // with several devices: [axis][departure] when it is seen
 
-  // Of the step; nodes + 1 where neighbours are asked: the one that does not exist is empty.
-  std::vector<uint32_t> count_, final_count_;  // particles at its start, at its end
-  std::vector<int64_t> start_;                 // first cycle
+  // Of the step; nodes + 1 where neighbours are asked.
   std::vector<Sent> sent_;
-  std::array<std::vector<int64_t>, kPhases> end_;                    // the phases' last cycles
   std::array<std::vector<int64_t>, 3> migrate_start_, migrate_end_;  // first cycle; that loads the end beat
   std::vector<Scratch> scratch_;                                     // by thread
-  std::vector<MachineEvents> events_;                                // by node
-  uint64_t steps_ = 0;
-  TimingCounters counters_;
 };
 
 }  // namespace cuboct::emu

@@ -2,13 +2,11 @@
 #include "emu/timing/brick_timing.h"
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "emu/timing/cycles.h"
 #include "emu/timing/force_time.h"
 #include "emu/timing/phase_spans.h"
 #include "model/base/integer_math.h"
-#include "model/base/parallel.h"
 
 namespace cuboct::emu {
 namespace {
@@ -98,43 +96,20 @@ void BrickMigration::move(int axis, std::vector<uint32_t>& count, const BrickMap
 }
 
 BrickTiming::BrickTiming(const Plan& plan, int threads)
-    : plan_(plan),
+    : NodeTiming(plan, threads),
       map_(plan.lattice, plan.bricks, plan.rule.axes),
-      nodes_(plan.nodes()),
-      axes_(plan.rule.axes),
-      threads_(threads > 0 ? threads : usable_cores()),
       halo_beats_(plan.words.halo_beats),
-      received_(kReceived + plan.link.latency),
       shape_{plan.arch.queue_depth, plan.latency.pipe, plan.rule.axes, plan.latency.interval},
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
       migration_(plan),
-      links_(plan),
       by_cell_(plan.lattice, plan.words.migrate_beats, 0),
-      count_(plan.lattice.size()),
-      start_(nodes_),
       halo_end_(nodes_),
       sent_(nodes_),
-      scratch_(static_cast<size_t>(threads_)),
-      events_(nodes_) {
-  for (auto& cycles : end_) cycles.resize(nodes_);
+      scratch_(static_cast<size_t>(threads_)) {
   for (auto& cycles : migrate_end_) cycles.resize(nodes_);
 }
 
-void BrickTiming::begin(const CellSlots& slots, std::span<const Leaving> leaving) {
-  const uint32_t cells = plan_.lattice.size();
-  if (slots.first.size() != cells + 1) throw std::invalid_argument("slots of another lattice");
-  for (const auto& x : slots.x)
-    if (x.size() < slots.first[cells]) throw std::invalid_argument("slots without positions");
-  for (uint32_t c = 0; c < cells; ++c) {
-    count_[c] = slots.first[c + 1] - slots.first[c];
-    if (count_[c] > static_cast<uint32_t>(plan_.arch.capacity))
-      throw std::invalid_argument("a cell holds more than its capacity");
-    if (steps_ > 0 && count_[c] != final_count_[c])
-      throw std::invalid_argument("a cell does not hold what the step before left there");
-  }
-  for (const Leaving& l : leaving)
-    if (l.cell >= cells || l.slot >= count_[l.cell]) throw std::invalid_argument("no such particle leaves");
-  final_count_ = count_;
+void BrickTiming::begin(std::span<const Leaving> leaving) {
   migration_.plan(final_count_, leaving, map_);
   if (!links_.any()) return;
   by_cell_count_ = count_;
@@ -363,9 +338,8 @@ void BrickTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
 }
 
 void BrickTiming::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
-  if (!spans.empty() && spans.size() != size_t{nodes_} * kPhases)
-    throw std::invalid_argument("spans of another lattice");
-  begin(slots, leaving);
+  take(slots, leaving, spans);
+  begin(leaving);
   const auto work = int64_t{plan_.lattice.size()} + 2 * int64_t{slots.first.back()};
   const int threads = static_cast<int>(
       std::clamp<int64_t>(work / kWorkPerThread, 1, std::min<int64_t>(threads_, int64_t{nodes_})));
@@ -391,26 +365,6 @@ void BrickTiming::step(const CellSlots& slots, std::span<const Leaving> leaving,
     });
     counters_.busy += busy, counters_.filtered += busy, counters_.walked += busy;
   }
-}
-
-uint64_t BrickTiming::cycles(const CellSlots& slots) const {
-  if (slots.first.size() != plan_.lattice.size() + 1) throw std::invalid_argument("slots of another lattice");
-  int64_t idle = 0;  // the last node's first cycle of IDLE
-  for (uint32_t n = 0; n < nodes_; ++n) idle = std::max(idle, start_[n] + walk(n, slots.first.data()));
-  return static_cast<uint64_t>(idle) + 1;
-}
-
-std::vector<uint64_t> BrickTiming::starts() const {
-  std::vector<uint64_t> starts(start_.begin(), start_.end());
-  links_.save(starts);
-  return starts;
-}
-
-void BrickTiming::resume(std::span<const uint64_t> starts) {
-  if (starts.size() != nodes_ + links_.saved()) throw std::invalid_argument("starts of another lattice");
-  std::copy_n(starts.begin(), nodes_, start_.begin());
-  links_.load_state(starts.subspan(nodes_));
-  steps_ = 0;
 }
 
 }  // namespace cuboct::emu

@@ -8,14 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "emu/timing/device_links.h"
 #include "emu/timing/hits.h"
-#include "emu/timing/migrate_time.h"
-#include "emu/timing/node_force.h"
-#include "emu/timing/slots.h"
-#include "hw/cost/events.h"
-#include "hw/plan/plan.h"
-#include "model/trace/trace.h"
+#include "emu/timing/node_timing.h"
 
 namespace cuboct::emu {
 
@@ -52,16 +46,10 @@ class BrickMigration {
   std::vector<MachineEvents> events_;  // by node
 };
 
-class BrickTiming {
+class BrickTiming final : public NodeTiming {
  public:
-  // As TimingModel's.
   BrickTiming(const Plan& plan, int threads);
-  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans);
-  uint64_t cycles(const CellSlots& slots) const;
-  std::vector<uint64_t> starts() const;
-  void resume(std::span<const uint64_t> starts);
-  std::span<const MachineEvents> events() const { return events_; }
-  const TimingCounters& counters() const { return counters_; }
+  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) override;
 
  private:
   struct Scratch {
@@ -72,7 +60,7 @@ class BrickTiming {
     std::array<uint64_t, kSegments> idle{};  // ... items that meet nobody
   };
 
-  void begin(const CellSlots& slots, std::span<const Leaving> leaving);
+  void begin(std::span<const Leaving> leaving);
   void send(int axis, uint32_t n);
   int64_t exchanged(int axis, uint32_t n) const;
   int64_t load_layer(uint8_t faces, int face, uint32_t n, int64_t start);
@@ -80,7 +68,7 @@ class BrickTiming {
   int64_t ended(int64_t end, uint32_t near, int face) const;
   // Records of the layer that goes over a face; `own`: those of own cells alone.
   uint64_t layer_records(int face, uint32_t n, bool own) const;
-  int64_t walk(uint32_t n, const uint32_t* first) const;
+  int64_t walk(uint32_t n, const uint32_t* first) const override;
   void exchange_to_update(const CellSlots& slots, uint32_t n, Scratch& scratch);
   int64_t force(const CellSlots& slots, uint32_t n, Scratch& scratch);
   void count_records(uint32_t n);
@@ -89,30 +77,20 @@ class BrickTiming {
   void take_particles(int axis, uint32_t n);
   void finish(uint32_t n, std::span<PhaseSpan> spans);
 
-  const Plan& plan_;
   const BrickMap map_;
-  const uint32_t nodes_;
-  const int axes_, threads_;
-  const int64_t halo_beats_, received_;
+  const int64_t halo_beats_;
   const ForceShape shape_;
   const Filter filter_;
   BrickMigration migration_;
-  DeviceLinks links_;
   // With several devices: the slots of what leaves a cell, as if each cell were a node, and each cell's
   // particles at the step's end.
   Migration by_cell_;
   std::vector<uint32_t> by_cell_count_;
 
-  std::vector<uint32_t> count_, final_count_;          // by cell: at the step's start, at its end
-  std::vector<int64_t> start_;                         // by node: the step's first cycle
-  std::array<std::vector<int64_t>, kPhases> end_;      // by node: the phases' last cycles
   std::vector<std::array<int64_t, kFaces>> halo_end_;  // by node and face: the cycle that loads the end beat
   std::vector<std::array<int64_t, 3>> sent_;           // ... the last of them, by axis
   std::array<std::vector<int64_t>, 3> migrate_end_;    // [axis][node]
   std::vector<Scratch> scratch_;                       // by thread
-  std::vector<MachineEvents> events_;                  // by node
-  uint64_t steps_ = 0;
-  TimingCounters counters_;
 };
 
 }  // namespace cuboct::emu

@@ -2,8 +2,6 @@
 // First and last cycle of each phase of a node, from the last cycles alone.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

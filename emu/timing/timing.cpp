@@ -8,12 +8,10 @@
 #include "emu/timing/arrival_timing.h"
 #include "emu/timing/brick_timing.h"
 #include "emu/timing/cycles.h"
-#include "emu/timing/device_links.h"
 #include "emu/timing/force_time.h"
 #include "emu/timing/hits.h"
-#include "emu/timing/migrate_time.h"
+#include "emu/timing/node_timing.h"
 #include "emu/timing/phase_spans.h"
-#include "model/base/parallel.h"
 #include "model/program/integer_program.h"
 
 namespace cuboct::emu {
@@ -26,12 +24,14 @@ struct Scratch {
   TimingCounters counters;
 };
 
-}  // namespace
+// Of nodes that serve one cell each, phase by phase.
+class PhaseTiming final : public CellTiming {
+ public:
+  PhaseTiming(const Plan& plan, int threads);
+  void step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) override;
 
-struct TimingModel::Impl {
-  Impl(const Plan& plan, int threads);
-
-  void begin(const CellSlots& slots, std::span<const Leaving> leaving);
+ private:
+  void begin(const CellSlots& slots, std::span<const Leaving> leaving, std::span<const PhaseSpan> spans);
   // One node's part of a step, pass by pass (those up to the update once per round, take_particles once per
   // axis): each pass needs of the neighbours what they did in the passes before.
   void send_x(uint32_t n);
@@ -50,132 +50,79 @@ struct TimingModel::Impl {
   int64_t exchanged(int axis, uint32_t n) const;
   int64_t force(uint32_t n, Scratch& scratch);
   void send_particles(int axis, uint32_t n, int64_t start);
-  int64_t scanned(int axis, uint32_t n, int64_t start);
   int64_t taken(int axis, uint32_t n, int side, int64_t now) const;
   void count_records(uint32_t n);
 
-  const Plan& plan_;
-  const uint32_t nodes_;
-  const int axes_;
-  const int threads_;
   const int rounds_;
   const graph::BondRows* const rows_;  // of a bonded rule
-  const int64_t received_;
-  std::vector<ForceShape> shape_;  // by round
+  std::vector<ForceShape> shape_;      // by round
   const Filter filter_;
-  std::vector<std::array<uint32_t, 6>> neighbour_;  // nodes + 1; number `nodes_` where there is none
-  const int64_t take_;                              // cycles of TAKE per particle
-  const int64_t answered_;                          // until a particle that was received is seen
-  Migration migration_;
-  DeviceLinks links_;
-  std::array<Cycles, 3> seen_;  // with several devices: [axis][departure] the cycle in which it is seen
+  const int64_t take_;  // cycles of TAKE per particle
 
   // Of the step, nodes + 1 each: the one that does not exist is empty.
   std::array<std::vector<int32_t>, 3> x_, old_x_;  // at its start, and at that of the step before
   std::vector<uint32_t> first_, old_first_;        // one more
   std::vector<uint32_t> id_;                       // of a bonded rule
   std::vector<NodeSlot> where_;                    // of a bonded rule, by id
-  std::vector<uint32_t> count_, final_count_;      // particles at its start, at its end
   std::vector<uint8_t> changed_;  // other particles than in the step before, or another order
   // ... or another position, where hits depend on it; there, or in a neighbour along x too.
   std::vector<uint8_t> moved_, moved_x_;
   std::vector<uint32_t> sent_y_, sent_z_;  // records that it sends along y, z
 
-  Cycles start_;             // the step's first cycle
-  int round_ = 0;            // that is looked at
-  Cycles begin_;             // its first cycle
-  std::vector<Cycles> end_;  // the phases' last cycles
+  int round_ = 0;  // that is looked at
+  Cycles begin_;   // its first cycle
   std::array<Cycles, 3> halo_end_, migrate_end_,
       migrate_start_;                          // [axis] cycle that loads the end beat; first cycle
   std::vector<std::vector<NodeForce>> force_;  // by round, then node
-  std::vector<MachineEvents> events_;
-  std::vector<Scratch> scratch_;  // by thread
-  uint64_t steps_ = 0;
-  TimingCounters counters_;
+  std::vector<Scratch> scratch_;               // by thread
 };
 
-TimingModel::Impl::Impl(const Plan& plan, int threads)
-    : plan_(plan),
-      nodes_(plan.lattice.size()),
-      axes_(plan.rule.axes),
-      threads_(threads > 0 ? threads : usable_cores()),
+PhaseTiming::PhaseTiming(const Plan& plan, int threads)
+    : CellTiming(plan, threads, plan.arch.narrow_memories ? 0 : kAnswered),
       rounds_(static_cast<int>(plan.rounds.size())),
       rows_(plan.program ? plan.program->rows.get() : nullptr),
-      received_(kReceived + plan.link.latency),
       filter_(plan.rule, plan.arch.filter_lanes, plan.arch.force_pipes),
-      neighbour_(nodes_ + 1),
       take_(plan.arch.narrow_memories ? plan.words.migrate_beats + 2 : 1),
-      answered_(plan.arch.narrow_memories ? 0 : kAnswered),
-      migration_(plan.lattice, plan.words.migrate_beats, static_cast<int>(received_ + answered_)),
-      links_(plan),
       first_(nodes_ + 2),
       old_first_(nodes_ + 2),
-      count_(nodes_ + 1),
-      final_count_(nodes_ + 1),
       changed_(nodes_ + 1),
       moved_(nodes_ + 1),
       moved_x_(nodes_ + 1),
       sent_y_(nodes_ + 1),
       sent_z_(nodes_ + 1),
-      start_(nodes_ + 1),
       begin_(nodes_ + 1),
-      end_(static_cast<size_t>(phases_of(rounds_))),
-      force_(plan.rounds.size()),
-      events_(nodes_) {
-  neighbour_[nodes_].fill(nodes_);
-  for (uint32_t n = 0; n < nodes_; ++n)
-    for (int f = 0; f < kFaces; ++f) {
-      const uint32_t other = plan.lattice.neighbour(n, f);
-      neighbour_[n][at(f)] = other == kNoCell ? nodes_ : other;
-    }
-  start_[nodes_] = begin_[nodes_] = kLongAgo;
+      force_(plan.rounds.size()) {
+  begin_[nodes_] = kLongAgo;
   for (const PlanRound& round : plan.rounds)
     shape_.push_back({plan.arch.queue_depth, round.pipe, plan.rule.axes, plan.latency.interval,
                       plan.arch.narrow_memories ? round.beats : 0});
   for (auto& nodes : force_) nodes.resize(nodes_);
   if (rows_ != nullptr) where_.resize(rows_->first.size() - 1);
-  for (auto& cycles : end_) cycles.resize(nodes_);
   for (auto* beats : {&halo_end_, &migrate_end_, &migrate_start_})
     for (auto& cycles : *beats) cycles.assign(nodes_ + 1, kLongAgo);
   for (int k = 0; k < threads_; ++k)
     scratch_.push_back({HitScratch(plan.arch.capacity, plan.arch.filter_lanes), {}});
 }
 
-void TimingModel::Impl::begin(const CellSlots& slots, std::span<const Leaving> leaving) {
-  if (slots.first.size() != nodes_ + 1) throw std::invalid_argument("slots of another lattice");
+void PhaseTiming::begin(const CellSlots& slots, std::span<const Leaving> leaving,
+                        std::span<const PhaseSpan> spans) {
+  take(slots, leaving, spans);
   const size_t particles = slots.first[nodes_];
-  for (const auto& x : slots.x)
-    if (x.size() < particles) throw std::invalid_argument("slots without positions");
   if (rows_ != nullptr && slots.id.size() < particles) throw std::invalid_argument("slots without ids");
-  for (uint32_t n = 0; n < nodes_; ++n) {
-    const uint32_t count = slots.first[n + 1] - slots.first[n];
-    if (count > static_cast<uint32_t>(plan_.arch.capacity))
-      throw std::invalid_argument("a cell holds more than its capacity");
-    if (steps_ > 0 && count != final_count_[n])
-      throw std::invalid_argument("a cell does not hold what the step before left there");
-  }
-  for (const Leaving& l : leaving)
-    if (l.cell >= nodes_ || l.slot >= slots.first[l.cell + 1] - slots.first[l.cell])
-      throw std::invalid_argument("no such particle leaves");
-
   std::swap(x_, old_x_);
   std::swap(first_, old_first_);
   for (auto& x : x_) x.resize(particles + Places::kBeyond);
   if (rows_ != nullptr) id_ = slots.id;
   std::copy(slots.first.begin(), slots.first.end(), first_.begin());
   first_[nodes_ + 1] = first_[nodes_];
-  for (uint32_t n = 0; n < nodes_; ++n) count_[n] = first_[n + 1] - first_[n];
   // Those that moved in the step before are what makes a node's particles others than they were.
   std::fill(changed_.begin(), changed_.end() - 1, steps_ == 0);
   migration_.mark(changed_);
-  std::copy(count_.begin(), count_.end(), final_count_.begin());
-  migration_.plan(final_count_, leaving);
-  if (!links_.any() || !migration_.any()) return;
-  for (int axis = 0; axis < axes_; ++axis) seen_[at(axis)].resize(migration_.departures(axis).size());
+  plan_migration(leaving);
 }
 
 // Takes the node's particles, and notes whether they are where they were.
-void TimingModel::Impl::place(const CellSlots& slots, uint32_t n) {
+void PhaseTiming::place(const CellSlots& slots, uint32_t n) {
   const uint32_t first = first_[n], count = count_[n], old = old_first_[n];
   if (rows_ != nullptr) {
     for (uint32_t slot = 0; slot < count; ++slot) where_.at(id_[first + slot]) = {n, slot};
@@ -193,8 +140,7 @@ void TimingModel::Impl::place(const CellSlots& slots, uint32_t n) {
 
 // The cycle that loads the end beat of a stream of these segments, by their records, whose phase begins in
 // `start`.
-int64_t TimingModel::Impl::sent(int axis, uint32_t n, int64_t start,
-                                std::initializer_list<uint32_t> segments) {
+int64_t PhaseTiming::sent(int axis, uint32_t n, int64_t start, std::initializer_list<uint32_t> segments) {
   int64_t now = start;
   const uint8_t faces = faces_along(axis);
   for (const uint32_t records : segments)
@@ -203,21 +149,21 @@ int64_t TimingModel::Impl::sent(int axis, uint32_t n, int64_t start,
 }
 
 // The cycle in which the node sees the end beat that its neighbour loaded in `end`.
-int64_t TimingModel::Impl::ended(const std::array<Cycles, 3>& end, int axis, uint32_t n, int side) const {
+int64_t PhaseTiming::ended(const std::array<Cycles, 3>& end, int axis, uint32_t n, int side) const {
   const int face = 2 * axis + side;
   const uint32_t near = neighbour_[n][at(face)];
   return links_.cut(near, face ^ 1) ? links_.seen(near, face ^ 1) : end[at(axis)][near] + received_;
 }
 
 // The last cycle of EXCHANGE_a.
-int64_t TimingModel::Impl::exchanged(int axis, uint32_t n) const {
+int64_t PhaseTiming::exchanged(int axis, uint32_t n) const {
   return std::max(
       {halo_end_[at(axis)][n] + kSent, ended(halo_end_, axis, n, 0), ended(halo_end_, axis, n, 1)});
 }
 
-void TimingModel::Impl::send_x(uint32_t n) { halo_end_[0][n] = sent(0, n, begin_[n], {count_[n]}); }
+void PhaseTiming::send_x(uint32_t n) { halo_end_[0][n] = sent(0, n, begin_[n], {count_[n]}); }
 
-void TimingModel::Impl::exchange_x(const CellSlots& slots, uint32_t n) {
+void PhaseTiming::exchange_x(const CellSlots& slots, uint32_t n) {
   if (round_ == 0) place(slots, n);
   const uint32_t own = count_[n], low = neighbour_[n][0], high = neighbour_[n][1];
   sent_y_[n] = own + count_[low] + count_[high];
@@ -225,7 +171,7 @@ void TimingModel::Impl::exchange_x(const CellSlots& slots, uint32_t n) {
   halo_end_[1][n] = sent(1, n, end + 1, {own, count_[low], count_[high]});
 }
 
-void TimingModel::Impl::exchange_y(uint32_t n) {
+void PhaseTiming::exchange_y(uint32_t n) {
   const auto& near = neighbour_[n];
   moved_x_[n] = moved_[n] | moved_[near[0]] | moved_[near[1]];
   const int64_t end = end_of(Phase::exchange_y, n) = exchanged(1, n);
@@ -237,14 +183,14 @@ void TimingModel::Impl::exchange_y(uint32_t n) {
 
 // Whether hits are those of the step before: the node and the 26 around hold what they held then, and where
 // hits depend on positions, where they held it.
-bool TimingModel::Impl::still(uint32_t n) const {
+bool PhaseTiming::still(uint32_t n) const {
   unsigned moved = 0;
   for (const uint32_t at_z : {n, neighbour_[n][4], neighbour_[n][5]})
     moved |= moved_x_[at_z] | moved_x_[neighbour_[at_z][2]] | moved_x_[neighbour_[at_z][3]];
   return moved == 0;
 }
 
-int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
+int64_t PhaseTiming::force(uint32_t n, Scratch& scratch) {
   const int64_t begin = plan_.arch.overlap ? begin_[n] : end_of(Phase::exchange_z, n) + 1;
   Available available;
   for (int a = 0; a < 3; ++a) available[at(a)] = end_of(static_cast<Phase>(a), n) + 1 - begin;
@@ -260,7 +206,7 @@ int64_t TimingModel::Impl::force(uint32_t n, Scratch& scratch) {
 }
 
 // Where an axis does not exist its phases end with those before them.
-void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
+void PhaseTiming::exchange_z_to_update(uint32_t n, Scratch& scratch) {
   end_of(Phase::exchange_z, n) = axes_ == 3 ? exchanged(2, n) : end_of(Phase::exchange_y, n);
   const int64_t force_end = end_of(Phase::force, n) = force(n, scratch);
   const int64_t update =
@@ -270,31 +216,13 @@ void TimingModel::Impl::exchange_z_to_update(uint32_t n, Scratch& scratch) {
   if (round_ + 1 == rounds_) send_particles(0, n, end + 1);
 }
 
-void TimingModel::Impl::send_particles(int axis, uint32_t n, int64_t start) {
+void PhaseTiming::send_particles(int axis, uint32_t n, int64_t start) {
   migrate_start_[at(axis)][n] = start;
-  migrate_end_[at(axis)][n] = links_.any() ? links_.load(n, faces_along(axis), scanned(axis, n, start), 1)
-                                           : start + (migration_.any() ? migration_.scan(axis, n) : 0);
-}
-
-// With several devices: the first cycle after SCAN. A cycle for each slot, and loads for what leaves.
-int64_t TimingModel::Impl::scanned(int axis, uint32_t n, int64_t start) {
-  if (!migration_.any()) return start;
-  const auto [first, departures] = migration_.departures(axis, n);
-  int64_t now = start;
-  uint32_t slot = 0;
-  for (size_t k = 0; k < departures.size(); ++k) {
-    const auto& [node, left, face] = departures[k];
-    const int64_t last =
-        links_.load(n, static_cast<uint8_t>(1u << face), now + left - slot, plan_.words.migrate_beats);
-    seen_[at(axis)][first + k] = (links_.cut(n, face) ? links_.seen(n, face) : last + received_) + answered_;
-    now = last + 1;
-    slot = left + 1;
-  }
-  return now + migration_.scanned(axis, n).slots - slot;
+  migrate_end_[at(axis)][n] = links_.load(n, faces_along(axis), scanned(axis, n, start), 1);
 }
 
 // The cycle after TAKE_LOW (side 0) or TAKE_HIGH, whose first cycle is `now`.
-int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) const {
+int64_t PhaseTiming::taken(int axis, uint32_t n, int side, int64_t now) const {
   if (migration_.any())
     for (const auto& arrival : migration_.arrivals(axis, n, side))
       now = std::max(now, links_.any() ? seen_[at(axis)][arrival.departure]
@@ -303,7 +231,7 @@ int64_t TimingModel::Impl::taken(int axis, uint32_t n, int side, int64_t now) co
   return std::max(now, ended(migrate_end_, axis, n, side)) + 1;
 }
 
-void TimingModel::Impl::take_particles(int axis, uint32_t n) {
+void PhaseTiming::take_particles(int axis, uint32_t n) {
   const int64_t low = taken(axis, n, 0, migrate_end_[at(axis)][n] + 1);
   const int64_t next = taken(axis, n, 1, low);
   end_of(static_cast<Phase>(static_cast<int>(Phase::migrate_x) + axis), n) = next - 1;
@@ -311,7 +239,7 @@ void TimingModel::Impl::take_particles(int axis, uint32_t n) {
 }
 
 // A relay reads what it sends along an axis once for both links, and whether there are links or not.
-void TimingModel::Impl::count_records(uint32_t n) {
+void PhaseTiming::count_records(uint32_t n) {
   MachineEvents& events = events_[n];
   for (int axis = 0; axis < axes_; ++axis) {
     const std::vector<uint32_t>& sent = axis == 0 ? count_ : axis == 1 ? sent_y_ : sent_z_;
@@ -332,7 +260,7 @@ void TimingModel::Impl::count_records(uint32_t n) {
   }
 }
 
-void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
+void PhaseTiming::finish(uint32_t n, std::span<PhaseSpan> spans) {
   events_[n].updates += count_[n] * static_cast<uint64_t>(rounds_);
   count_records(n);
   migration_.count(n, axes_, events_[n]);
@@ -340,99 +268,52 @@ void TimingModel::Impl::finish(uint32_t n, std::span<PhaseSpan> spans) {
   start_[n] = end_of(Phase::migrate_z, n) + 1;
 }
 
-TimingModel::TimingModel(const Plan& plan, int threads) {
-  if (plan.arch.halos == Halos::arrival)
-    arrival_ = std::make_unique<ArrivalTiming>(plan, threads);
-  else if (plan.bricks.one_cell())
-    impl_ = std::make_unique<Impl>(plan, threads);
-  else
-    brick_ = std::make_unique<BrickTiming>(plan, threads);
-}
-TimingModel::~TimingModel() = default;
-
-void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
-  if (brick_) return brick_->step(slots, leaving, spans);
-  if (arrival_) return arrival_->step(slots, leaving, spans);
-  Impl& m = *impl_;
-  if (!spans.empty() && spans.size() != size_t{m.nodes_} * m.end_.size())
-    throw std::invalid_argument("spans of another lattice");
-  m.begin(slots, leaving);
-  const auto nodes = static_cast<int64_t>(m.nodes_);
-  const auto work = nodes + 2 * int64_t{m.first_[m.nodes_]};
-  const int threads = static_cast<int>(std::clamp<int64_t>(work / kWorkPerThread, 1, m.threads_));
-  // Busy nodes cost many times what empty ones do: small shares, on demand.
-  const int64_t share = std::clamp<int64_t>(nodes / (16 * threads), 1, 64);
-  const auto for_all = [&](const auto& part) {
-    const auto range = [&](size_t begin, size_t end) {
-      for (size_t n = begin; n < end; ++n) part(static_cast<uint32_t>(n));
-    };
-    for_each_range(m.nodes_, 1, range, threads);
-  };
-  std::copy(m.start_.begin(), m.start_.end(), m.begin_.begin());
-  for (m.round_ = 0;; ++m.round_) {
-    for_all([&](uint32_t n) { m.send_x(n); });
-    for_all([&](uint32_t n) { m.exchange_x(slots, n); });
-    for_all([&](uint32_t n) { m.exchange_y(n); });
-    for_each_part(static_cast<size_t>((nodes + share - 1) / share), threads, [&](size_t k, int member) {
-      const auto first = static_cast<int64_t>(k) * share;
-      for (int64_t n = first; n < std::min(nodes, first + share); ++n)
-        m.exchange_z_to_update(static_cast<uint32_t>(n), m.scratch_[at(member)]);
-    });
-    if (m.round_ + 1 == m.rounds_) break;
+void PhaseTiming::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+  begin(slots, leaving, spans);
+  const auto work = int64_t{nodes_} + 2 * int64_t{first_[nodes_]};
+  const int threads = static_cast<int>(std::clamp<int64_t>(work / kWorkPerThread, 1, threads_));
+  std::copy(start_.begin(), start_.end(), begin_.begin());
+  for (round_ = 0;; ++round_) {
+    for_all(threads, [&](uint32_t n) { send_x(n); });
+    for_all(threads, [&](uint32_t n) { exchange_x(slots, n); });
+    for_all(threads, [&](uint32_t n) { exchange_y(n); });
+    for_all_busy(threads, [&](uint32_t n, int member) { exchange_z_to_update(n, scratch_[at(member)]); });
+    if (round_ + 1 == rounds_) break;
   }
-  const int last = m.axes_ - 1;
-  for (int axis = 0; axis < last; ++axis) for_all([&](uint32_t n) { m.take_particles(axis, n); });
-  for_all([&](uint32_t n) {
-    m.take_particles(last, n);
-    if (last < 2) m.end_of(Phase::migrate_z, n) = m.end_of(Phase::migrate_y, n);
-    m.finish(n, spans);
+  const int last = axes_ - 1;
+  for (int axis = 0; axis < last; ++axis) for_all(threads, [&](uint32_t n) { take_particles(axis, n); });
+  for_all(threads, [&](uint32_t n) {
+    take_particles(last, n);
+    if (last < 2) end_of(Phase::migrate_z, n) = end_of(Phase::migrate_y, n);
+    finish(n, spans);
   });
-  ++m.steps_;
-  for (Scratch& s : m.scratch_) {
-    m.counters_.busy += s.counters.busy;
-    m.counters_.filtered += s.counters.filtered;
-    m.counters_.walked += s.counters.walked;
+  ++steps_;
+  for (Scratch& s : scratch_) {
+    counters_.busy += s.counters.busy;
+    counters_.filtered += s.counters.filtered;
+    counters_.walked += s.counters.walked;
     s.counters = {};
   }
 }
 
-uint64_t TimingModel::cycles(const CellSlots& slots) const {
-  if (brick_) return brick_->cycles(slots);
-  if (arrival_) return arrival_->cycles(slots);
-  const Impl& m = *impl_;
-  if (slots.first.size() != m.nodes_ + 1) throw std::invalid_argument("slots of another lattice");
-  uint64_t idle = 0;  // the last node's first cycle of IDLE
-  for (uint32_t n = 0; n < m.nodes_; ++n)
-    idle = std::max(idle,
-                    static_cast<uint64_t>(m.start_[n]) + std::max(1u, slots.first[n + 1] - slots.first[n]));
-  return idle + 1;
+std::unique_ptr<NodeTiming> timing_of(const Plan& plan, int threads) {
+  if (plan.arch.halos == Halos::arrival) return std::make_unique<ArrivalTiming>(plan, threads);
+  if (plan.bricks.one_cell()) return std::make_unique<PhaseTiming>(plan, threads);
+  return std::make_unique<BrickTiming>(plan, threads);
 }
 
-std::vector<uint64_t> TimingModel::starts() const {
-  if (brick_) return brick_->starts();
-  if (arrival_) return arrival_->starts();
-  std::vector<uint64_t> starts(impl_->start_.begin(), impl_->start_.end() - 1);
-  impl_->links_.save(starts);
-  return starts;
-}
+}  // namespace
 
-void TimingModel::resume(std::span<const uint64_t> starts) {
-  if (brick_) return brick_->resume(starts);
-  if (arrival_) return arrival_->resume(starts);
-  const size_t nodes = impl_->nodes_;
-  if (starts.size() != nodes + impl_->links_.saved())
-    throw std::invalid_argument("starts of another lattice");
-  std::copy_n(starts.begin(), nodes, impl_->start_.begin());
-  impl_->links_.load_state(starts.subspan(nodes));
-  impl_->steps_ = 0;  // the next step's particles are not those of the last one
-}
+TimingModel::TimingModel(const Plan& plan, int threads) : nodes_(timing_of(plan, threads)) {}
+TimingModel::~TimingModel() = default;
 
-std::span<const MachineEvents> TimingModel::events() const {
-  return brick_ ? brick_->events() : arrival_ ? arrival_->events() : impl_->events_;
+void TimingModel::step(const CellSlots& slots, std::span<const Leaving> leaving, std::span<PhaseSpan> spans) {
+  nodes_->step(slots, leaving, spans);
 }
-
-const TimingCounters& TimingModel::counters() const {
-  return brick_ ? brick_->counters() : arrival_ ? arrival_->counters() : impl_->counters_;
-}
+uint64_t TimingModel::cycles(const CellSlots& slots) const { return nodes_->cycles(slots); }
+std::vector<uint64_t> TimingModel::starts() const { return nodes_->starts(); }
+void TimingModel::resume(std::span<const uint64_t> starts) { nodes_->resume(starts); }
+std::span<const MachineEvents> TimingModel::events() const { return nodes_->events(); }
+const TimingCounters& TimingModel::counters() const { return nodes_->counters(); }
 
 }  // namespace cuboct::emu

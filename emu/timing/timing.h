@@ -17,8 +17,7 @@
 
 namespace cuboct::emu {
 
-class ArrivalTiming;
-class BrickTiming;
+class NodeTiming;
 
 class TimingModel {
  public:
@@ -51,11 +50,7 @@ class TimingModel {
   const TimingCounters& counters() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
-  // In its place where nodes serve bricks, or use halos on arrival.
-  std::unique_ptr<BrickTiming> brick_;
-  std::unique_ptr<ArrivalTiming> arrival_;
+  std::unique_ptr<NodeTiming> nodes_;
 };
 
 }  // namespace cuboct::emu
