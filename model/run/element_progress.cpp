@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <filesystem>
+#include <span>
 
 #include "model/base/error.h"
 #include "model/base/output.h"
@@ -18,17 +20,13 @@ constexpr uint64_t kLayout = 0x6375626f'656c6d32;  // changes with what is saved
 class Out {
  public:
   explicit Out(const std::string& path) : file_(path) {}
-  void word(uint64_t value) { file_.word(value); }
-  void item(const uint64_t& value) { word(value); }
-  void item(const bool& value) { word(value ? 1 : 0); }
-  void item(const int& value) { word(static_cast<uint64_t>(value)); }
-  void item(const double& value) { file_.number(value); }
+  void word(uint64_t& value) { file_.word(value); }
   template <typename T>
-  void size(const std::vector<T>& items) {
-    word(items.size());
+  void size(std::vector<T>& items) {
+    file_.word(items.size());
   }
   void end() {
-    word(file_.mark().hash);
+    file_.word(file_.mark().hash);
     file_.sync();
   }
 
@@ -40,10 +38,7 @@ class In {
  public:
   explicit In(const std::string& path) : path_(path), file_(path) {}
   uint64_t word() { return file_.word(); }
-  void item(uint64_t& value) { value = word(); }
-  void item(bool& value) { value = word() != 0; }
-  void item(int& value) { value = static_cast<int>(word()); }
-  void item(double& value) { value = file_.number(); }
+  void word(uint64_t& value) { value = word(); }
   template <typename T>
   void size(std::vector<T>& items) {
     items.resize(file_.count(1));
@@ -59,88 +54,55 @@ class In {
   WordReader file_;
 };
 
-template <class File, class... Items>
-void walk(File& file, Items&... items);
+void walk(auto& file, auto&... items) { (visit(file, items), ...); }
 
-template <class File, typename T>
-requires requires(File& f, T& t) { f.item(t); }
-void visit(File& file, T& value) { file.item(value); }
-template <class File, typename T>
-requires requires(T& t) { t.squaredNorm(); }
-void visit(File& file, T& matrix) {
-  for (size_t k = 0; k < static_cast<size_t>(matrix.size()); ++k) file.item(matrix.data()[k]);
+void visit(auto& file, uint64_t& value) { file.word(value); }
+void visit(auto& file, bool& value) {
+  uint64_t word = value ? 1 : 0;
+  file.word(word);
+  value = word != 0;
 }
-template <class File>
-void visit(File& file, auto& point) requires requires {
-  point.iterations;
+void visit(auto& file, int& value) {
+  auto word = static_cast<uint64_t>(value);
+  file.word(word);
+  value = static_cast<int>(word);
 }
-{ walk(file, point.strain, point.stress, point.expansion, point.across, point.iterations); }
-template <class File>
-void visit(File& file, auto& point) requires requires {
-  point.place, point.time;
+void visit(auto& file, double& value) {
+  auto word = std::bit_cast<uint64_t>(value);
+  file.word(word);
+  value = std::bit_cast<double>(word);
 }
-{ walk(file, point.time, point.place); }
-template <class File>
-void visit(File& file, auto& snapshot) requires requires {
-  snapshot.points;
+template <class Matrix>
+requires requires(Matrix& m) { m.squaredNorm(); }
+void visit(auto& file, Matrix& matrix) {
+  for (double& value : std::span(matrix.data(), static_cast<size_t>(matrix.size()))) visit(file, value);
 }
-{ walk(file, snapshot.time, snapshot.points); }
-template <class File>
-void visit(File& file, auto& work) requires requires {
-  work.relaxations;
-}
-{
-  walk(file, work.updates, work.relaxations, work.evaluations, work.largest_error, work.squared_error,
-       work.measured);
-}
-template <class File>
-void visit(File& file, auto& wave) requires requires {
-  wave.snapshots;
-}
-{
-  walk(file, wave.front, wave.speed.speed, wave.speed.error, wave.dt, wave.steps, wave.largest_strain,
-       wave.snapshots);
-}
-template <class File>
-void visit(File& file, auto& outcome) requires requires {
-  outcome.moduli;
-}
-{
-  walk(file, outcome.stretch, outcome.moduli.youngs, outcome.moduli.poisson, outcome.wave, outcome.work,
-       outcome.seconds, outcome.processor);
-}
-template <class File>
-void visit(File& file, auto& sample) requires requires {
-  sample.energy, sample.strain;
-}
-{ walk(file, sample.place, sample.strain, sample.stress, sample.energy); }
-template <class File>
-void visit(File& file, auto& progress) requires requires {
-  progress.waving;
-}
-{
-  walk(file, progress.outcome, progress.waving, progress.steps, progress.history, progress.x, progress.v,
-       progress.period, progress.samples, progress.begun);
-}
-template <class File>
-void visit(File& file,
-           auto& three) requires std::is_same_v<std::remove_cvref_t<decltype(three)>, std::array<double, 3>> {
-  walk(file, three[0], three[1], three[2]);
-}
-template <class File, typename T>
-void visit(File& file, std::vector<T>& items) {
+void visit(auto& file, std::array<double, 3>& three) { walk(file, three[0], three[1], three[2]); }
+template <typename T>
+void visit(auto& file, std::vector<T>& items) {
   file.size(items);
   for (T& item : items) visit(file, item);
 }
-template <class File, typename T>
-void visit(File& file, const std::vector<T>& items) {
-  file.size(items);
-  for (const T& item : items) visit(file, item);
+void visit(auto& file, StretchPoint& point) {
+  walk(file, point.strain, point.stress, point.expansion, point.across, point.iterations);
 }
-
-template <class File, class... Items>
-void walk(File& file, Items&... items) {
-  (visit(file, items), ...);
+void visit(auto& file, FrontPoint& point) { walk(file, point.time, point.place); }
+void visit(auto& file, WaveSnapshot& snapshot) { walk(file, snapshot.time, snapshot.points); }
+void visit(auto& file, SetOutcome& outcome) {
+  WaveOutcome& wave = outcome.wave;
+  SampleWork& work = outcome.work;
+  walk(file, outcome.stretch, outcome.moduli.youngs, outcome.moduli.poisson, wave.front, wave.speed.speed,
+       wave.speed.error, wave.dt, wave.steps, wave.largest_strain, wave.snapshots, work.updates,
+       work.relaxations, work.evaluations, work.largest_error, work.squared_error, work.measured,
+       outcome.seconds, outcome.processor);
+}
+void visit(auto& file, ElementSample& sample) {
+  walk(file, sample.place, sample.strain, sample.stress, sample.energy);
+}
+void visit(auto& file, ElementProgressFile& progress) {
+  ElementProgress& now = progress.now;
+  walk(file, progress.done, now.outcome, now.waving, now.steps, now.history, now.x, now.v, now.period,
+       now.samples, now.begun);
 }
 
 }  // namespace
@@ -148,9 +110,9 @@ void walk(File& file, Items&... items) {
 void save_progress(const std::string& path, uint64_t study, const ElementProgressFile& progress) {
   write_whole(path, [&](const std::string& temporary) {
     Out file(temporary);
-    file.word(kLayout);
-    file.word(study);
-    walk(file, progress.done, progress.now);
+    uint64_t layout = kLayout;
+    ElementProgressFile copy = progress;
+    walk(file, layout, study, copy);
     file.end();
   });
 }
@@ -164,7 +126,7 @@ ElementProgressFile load_progress(const std::string& path, uint64_t study) {
   if (file.word() != study)
     throw InputError(fmt::format("{} is the progress of another study", path),
                      "remove it, or give another directory");
-  walk(file, out.done, out.now);
+  walk(file, out);
   file.end();
   return out;
 }

@@ -87,63 +87,42 @@ class HandOver {
   Bytes& bytes_;
 };
 
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, State& state) {
-  pass(state.step, state.particles);
-}
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, RealFrame& frame) {
+void fields(auto& pass, State& state) { pass(state.step, state.particles); }
+void fields(auto& pass, RealFrame& frame) {
   pass(frame.step, frame.x, frame.v, frame.force, frame.u, frame.shown);
 }
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Curve& curve) {
-  pass(curve.name, curve.unit, curve.step, curve.value);
-}
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, StopReason& stop) {
+void fields(auto& pass, Curve& curve) { pass(curve.name, curve.unit, curve.step, curve.value); }
+void fields(auto& pass, StopReason& stop) {
   pass(stop.fault, stop.step, stop.cell, stop.particle, stop.number, stop.text);
 }
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Reached& reached) {
+void fields(auto& pass, Reached& reached) {
   pass(reached.curve, reached.side, reached.step, reached.value, reached.limit);
 }
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Finding& f) {
+void fields(auto& pass, Finding& f) {
   pass(f.failure, f.step, f.particle, f.place, f.number, f.limit, f.text);
 }
 // All but its frames and bodies, which come one by one.
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Trace& t) {
+void fields(auto& pass, Trace& t) {
   pass(t.engine, t.plan_hash, t.nodes, t.state_hash, t.hash_every, t.steps_done, t.bonds, t.curves, t.cycles,
        t.stop, t.reached, t.asked, t.findings, t.watched, t.seconds, t.counters, t.notes);
 }
 // What comes next of a trace.
 enum class TracePart : uint8_t { end, frame, body };
 
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, BondState& bonds) {
-  pass(bonds.packed, bonds.kept);
-}
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, ExactBody& exact) {
+void fields(auto& pass, BondState& bonds) { pass(bonds.packed, bonds.kept); }
+void fields(auto& pass, ExactBody& exact) {
   pass(exact.widths, exact.cell_edge, exact.shape, exact.dt, exact.origin, exact.cell, exact.x, exact.v,
        exact.u);
 }
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Body& body) {
-  pass(body.x, body.v, body.u, body.type, body.exact, body.bonds);
-}
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, LeftState& left) {
+void fields(auto& pass, Body& body) { pass(body.x, body.v, body.u, body.type, body.exact, body.bonds); }
+void fields(auto& pass, LeftState& left) {
   pass(left.engine, left.step, left.first_step, left.packing, left.box_strain, left.types, left.body);
 }
 
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Raster& r) {
+void fields(auto& pass, Raster& r) {
   pass(r.step, r.time, r.thickness, r.strain, r.speed, r.broken, r.outside);
 }
-template <typename Bytes>
-void fields(HandOver<Bytes>& pass, Rasters& rasters) {
+void fields(auto& pass, Rasters& rasters) {
   pass(rasters.title, rasters.strain_axis, rasters.particle, rasters.grid, rasters.frames);
 }
 
