@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "hw/engine/scene_engine.h"
 #include "hw/rtl/rtl_emit.h"
+#include "model/base/clock.h"
 #include "model/base/interrupt.h"
 #include "model/config/changes.h"
 #include "model/config/config.h"
@@ -204,7 +204,7 @@ void Fitter::measure(const FitPoint& point) {
                   point.brick[1], point.brick[2], point.lanes, point.pipes, measured_.size());
   says_(at_work_);
   const Plan plan = plan_at(point);
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   const Measured m = meter_.measure(
       [&](const std::string& directory) {
         try {
@@ -221,7 +221,7 @@ void Fitter::measure(const FitPoint& point) {
     all[r] += around[r];
     around_[r] = static_cast<double>(around[r]) / static_cast<double>(m.nodes);
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = seconds_since(begin);
   if (!m.kept) ++syntheses_, seconds_ += seconds;
   if (announced_) tells_(line_of(point, m.kept, seconds));
 }

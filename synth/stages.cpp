@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <set>
 #include <utility>
+
+#include "model/base/clock.h"
 
 namespace cuboct::synth {
 namespace {
@@ -55,10 +56,9 @@ void Stages::make_again(const std::string& name, const std::function<void()>& wo
 }
 
 void Stages::time(const std::function<void()>& work) {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
   work();
-  seconds_ = std::chrono::duration<double>(Clock::now() - begin).count();
+  seconds_ = seconds_since(begin);
 }
 
 void Stages::announce(const std::string& first) {

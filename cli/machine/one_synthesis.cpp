@@ -3,9 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "cli/answer.h"
+#include "model/base/clock.h"
 
 namespace cuboct {
 
@@ -20,7 +19,7 @@ synth::Measured one_synthesis(const std::string& label, const synth::Target& tar
                               const std::function<void(const std::string& directory)>& emit,
                               synth::Nodes nodes) {
   ToolLines lines(label);
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   try {
     const synth::Measured m =
         synth::Meter(target, hears_of_synthesis(lines, target)).measure(emit, false, nodes);
@@ -28,8 +27,7 @@ synth::Measured one_synthesis(const std::string& label, const synth::Target& tar
     std::string takes;
     for (const synth::Resource r : synth::resources_of(target.family))
       if (m.node[r] > 0) takes += fmt::format(", {} {}", synth::to_string(r), m.node[r]);
-    lines.tells()(fmt::format("{:.0f} s, {}{}",
-                              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+    lines.tells()(fmt::format("{:.0f} s, {}{}", seconds_since(begin),
                               nodes == synth::Nodes::flat ? "the node" : "each node", takes));
     return m;
   } catch (const synth::ToolFailed& error) {

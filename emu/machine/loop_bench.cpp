@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <optional>
 
 #include "emu/machine/device_wire.h"
 #include "emu/machine/stall.h"
+#include "model/base/clock.h"
 
 namespace cuboct::emu {
 namespace {
@@ -175,7 +175,7 @@ RunResult run_loop_bench(const Plan& plan, const State& initial, const RunOption
   for (Place& p : places) p.control.start = false;
 
   const uint64_t patience = options.patience != 0 ? options.patience : patience_of(plan, options.stall_rate);
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   uint64_t cycle = 0;
   for (; !collector.done(); ++cycle) {
     machine.clock(cycle);
@@ -205,7 +205,7 @@ RunResult run_loop_bench(const Plan& plan, const State& initial, const RunOption
   result.faults = machine.faults.source.counts();
   result.first_fault = machine.faults.source.first();
   result.trace.engine = engine;
-  result.trace.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.trace.seconds = seconds_since(begin);
   result.trace.counters = {{"cycles", cycles}};
   for (const Place& p : places) add_counters(result.trace.counters, 1, p.model->counters(machine.now()));
   if (options.faults.enabled())

@@ -4,21 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 
 #include "model/atoms/multiscale/element_stiffness.h"
+#include "model/base/clock.h"
 #include "model/run/element_progress.h"
 
 namespace cuboct {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 double processor_seconds() {
   timespec now{};

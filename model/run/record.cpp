@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <initializer_list>
@@ -13,6 +12,7 @@
 #include <tuple>
 
 #include "model/analysis/meter.h"
+#include "model/base/clock.h"
 #include "model/base/error_parts.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -23,16 +23,12 @@
 namespace cuboct {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
 // Adds the time of a scope to each of them.
 class Timed {
  public:
   explicit Timed(std::initializer_list<double*> sums) : sums_(sums) {}
   ~Timed() {
-    for (double* sum : sums_) *sum += since(begin_);
+    for (double* sum : sums_) *sum += seconds_since(begin_);
   }
   Timed(const Timed&) = delete;
   Timed& operator=(const Timed&) = delete;
@@ -147,7 +143,7 @@ void Loop::make_engine(CheckpointReader* from, bool cycles) {
 void Loop::start() {
   const auto begin = Clock::now();
   make_engine(nullptr, request_.cycles);
-  if (kind_.relaxes) trace_.seconds += since(begin);  // to rest, which is the run's work
+  if (kind_.relaxes) trace_.seconds += seconds_since(begin);  // to rest, which is the run's work
   if (!save_plan_.path.empty() && leads()) {
     if (std::filesystem::exists(save_plan_.path))
       throw InputError(fmt::format("{} holds a run that did not end", save_plan_.path),
@@ -308,12 +304,12 @@ void Loop::advance(uint64_t steps) {
   try {
     engine_->advance(steps, hashes_come() ? &trace_.state_hash : nullptr);
   } catch (...) {
-    trace_.seconds += since(begin);
+    trace_.seconds += seconds_since(begin);
     lost_ = !kind_.keeps_state;
     if (!lost_) done();
     throw;
   }
-  trace_.seconds += since(begin);
+  trace_.seconds += seconds_since(begin);
   done();
 }
 
@@ -337,7 +333,7 @@ void Loop::go() {
     advance(kind_.batches ? std::min(next_stop() - before, piece_) : 1);
     // Ctrl-C during a save ends a batch before its first step: this one has been recorded.
     if (engine_->step_count() > before) record();
-    if (since(begin) < 0.1 && piece_ < request_.steps) piece_ *= 2;
+    if (seconds_since(begin) < 0.1 && piece_ < request_.steps) piece_ *= 2;
     show();
     bool due = false;
     std::tie(stop, due) = engine_->agreed(interrupted(), save_is_due());
@@ -355,7 +351,7 @@ void Loop::show() {
 bool Loop::save_is_due() const {
   return journal_ &&
          ((save_plan_.every_steps > 0 && trace_.steps_done - saved_step_ >= save_plan_.every_steps) ||
-          (save_plan_.every_seconds > 0 && since(saved_time_) >= save_plan_.every_seconds));
+          (save_plan_.every_seconds > 0 && seconds_since(saved_time_) >= save_plan_.every_seconds));
 }
 
 void Loop::save() {

@@ -166,7 +166,7 @@ void run_whole(benchmark::State& state, const std::string& group, const BenchSce
   for (auto _ : state) {
     const auto begin = Clock::now();
     engine->advance(steps);
-    state.SetIterationTime(since(begin));
+    state.SetIterationTime(seconds_since(begin));
   }
   const uint64_t hash = engine->hash();
   if (!same_state(state, group, hash)) return;

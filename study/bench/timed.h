@@ -5,17 +5,12 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <functional>
 
+#include "model/base/clock.h"
+
 namespace cuboct {
-
-using Clock = std::chrono::steady_clock;
-
-inline double since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 // Times `step` for about so many seconds in each repetition; answers the steps of one. The number is found in
 // the first, which warms up, and then stays.
@@ -28,14 +23,14 @@ class Timed {
       for (int k = 0; k < 3; ++k) step();  // memory is touched, lists are made
       const auto begin = Clock::now();
       uint64_t warm = 0;
-      for (; warm < 1 || (since(begin) < 0.3 * seconds_ && warm < 1000); ++warm) step();
-      steps_ =
-          std::max<uint64_t>(1, static_cast<uint64_t>(seconds_ * static_cast<double>(warm) / since(begin)));
+      for (; warm < 1 || (seconds_since(begin) < 0.3 * seconds_ && warm < 1000); ++warm) step();
+      steps_ = std::max<uint64_t>(
+          1, static_cast<uint64_t>(seconds_ * static_cast<double>(warm) / seconds_since(begin)));
     }
     for (auto _ : state) {
       const auto begin = Clock::now();
       for (uint64_t k = 0; k < steps_; ++k) step();
-      state.SetIterationTime(since(begin));
+      state.SetIterationTime(seconds_since(begin));
     }
   }
   uint64_t steps() const { return steps_; }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -15,6 +14,7 @@
 #include <string>
 
 #include "model/analysis/tension.h"
+#include "model/base/clock.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/json.h"
@@ -25,8 +25,6 @@
 
 namespace cuboct::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr size_t kLeastRuns = 3;  // of a line
 constexpr double kFiner = 1 / std::numbers::sqrt2;
@@ -100,7 +98,7 @@ PitchRun run_at(const PitchQuestion& q, const Case& c, int shift) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}: {}", at, error.what()));
   }
-  run.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  run.seconds = seconds_since(begin);
   return run;
 }
 

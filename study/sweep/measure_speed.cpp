@@ -2,7 +2,6 @@
 #include "study/sweep/measure_speed.h"
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "emu/lattice/run.h"
 #include "hw/engine/engine_kind.h"
+#include "model/base/clock.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "study/sweep/gpu_program.h"
@@ -17,10 +17,6 @@
 
 namespace cuboct::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 // An engine that begins again at will.
 class Stepper {
@@ -73,7 +69,7 @@ class Stepper {
         step_();
         if (interrupted()) throw Interrupted();
       }
-      seconds += since(start);
+      seconds += seconds_since(start);
       done_ += now;
       count -= now;
     }

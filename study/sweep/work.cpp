@@ -10,13 +10,12 @@
 #include <mutex>
 #include <thread>
 
+#include "model/base/clock.h"
 #include "model/base/progress.h"
 #include "model/base/resources.h"
 
 namespace cuboct::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct Board {
   std::mutex mutex;
@@ -28,7 +27,7 @@ struct Board {
 
 std::string status(const Board& board, size_t count, double size, const std::string& label,
                    Clock::time_point begin) {
-  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  const double seconds = seconds_since(begin);
   std::string left;
   if (board.done_size > 0) {
     const auto rest = static_cast<uint64_t>(seconds * (size - board.done_size) / board.done_size);
