@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "model/atoms/bond_order/atom_cell.h"
 #include "model/base/output.h"
@@ -185,18 +184,17 @@ void draw_convergence(const BondFindings& found, const std::string& directory) {
       for (size_t k = 0; k < descent.loss.size(); ++k)
         rows += fmt::format("{} {:.6g}\n", descent.evaluation[k], descent.loss[k]);
       rows += fmt::format("{} {:.6g}\n", found.compared[m].found[s].evaluations, descent.loss.back());
-      data += fmt::format("$of{}_{} << END\n{}END\n", m, s, rows);
+      data += plot_block(fmt::format("of{}_{}", m, s), rows);
       plots += fmt::format(
           "{}$of{}_{} with steps lw 2 lc rgb '{}' {}", plots.empty() ? "" : ", ", m, s, kColours[m],
           s > 0 ? "notitle" : fmt::format("title '{}'", bond_fit::name_of(found.compared[m].method)));
     }
-  write_text(directory + "/convergence.png",
-             gnuplot(data,
-                     "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\nset key right top\n"
-                     "set logscale xy\nset format y '10^{%T}'\nset xlabel 'evaluations of the loss'\n"
-                     "set ylabel 'loss, least so far'\nplot " +
-                         plots + "\n",
-                     "png", 900, 520));
+  draw_plot(directory + "/convergence.png", data,
+            "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\nset key right top\n"
+            "set logscale xy\nset format y '10^{%T}'\nset xlabel 'evaluations of the loss'\n"
+            "set ylabel 'loss, least so far'\nplot " +
+                plots + "\n",
+            900, 520);
 }
 
 }  // namespace cuboct

@@ -85,21 +85,18 @@ void write_crack_tables(const LearnStudy& study, const Cracks& cracks, const std
 
 namespace {
 
-constexpr const char* kChartStyle = "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\n";
-
 void draw_stretch(const Cracks& cracks, const std::string& directory) {
   std::string rows;
   for (const learn::StretchPoint& p : cracks.model.stretch.tried)
     rows += fmt::format("{:.6g} {:.6g} {:.6g}\n", p.stretch, p.errors.displacement, p.errors.damage);
-  write_text(directory + "/stretch.svg",
-             gnuplot(fmt::format("$tried << END\n{}END\n", rows),
-                     fmt::format("{}set xlabel 'critical stretch'\nset ylabel 'relative error, training'\n"
-                                 "set yrange [0:*]\nset arrow 1 from {},graph 0 to {},graph 1 nohead dt 2\n"
-                                 "plot $tried using 1:2 with linespoints pt 7 ps 0.5 lw 2 lc rgb '#1f5fa8' "
-                                 "title 'displacement', $tried using 1:3 with linespoints pt 7 ps 0.5 lw 2 "
-                                 "lc rgb '#b03020' title 'damage'\n",
-                                 kChartStyle, cracks.model.stretch.stretch, cracks.model.stretch.stretch),
-                     "svg", 640, 400));
+  draw_plot(directory + "/stretch.svg", plot_block("tried", rows),
+            fmt::format("{}set xlabel 'critical stretch'\nset ylabel 'relative error, training'\n"
+                        "set yrange [0:*]\nset arrow 1 from {},graph 0 to {},graph 1 nohead dt 2\n"
+                        "plot $tried using 1:2 with linespoints pt 7 ps 0.5 lw 2 lc rgb '#1f5fa8' "
+                        "title 'displacement', $tried using 1:3 with linespoints pt 7 ps 0.5 lw 2 "
+                        "lc rgb '#b03020' title 'damage'\n",
+                        kPlotStyle, cracks.model.stretch.stretch, cracks.model.stretch.stretch),
+            640, 400);
 }
 
 // Error against core seconds; joules are these times a power, on the upper axis.
@@ -127,27 +124,24 @@ void draw_cost(const LearnStudy& study, const Cracks& cracks, const std::string&
       ++number;
     }
   const double low = least / 1.5, high = most * 2, watts = study.prediction.watts;
-  write_text(
-      directory + "/cost.svg",
-      gnuplot(
-          data,
-          fmt::format("{}set border 7\nset logscale xx2\nset xrange [{:.4g}:{:.4g}]\nset x2range "
-                      "[{:.4g}:{:.4g}]\nset x2tics\nset yrange [0:*]\nset key left bottom\nset xlabel "
-                      "'core seconds'\nset x2label 'J, at {:g} W a core'\nset ylabel 'error of "
-                      "displacement, %'\nset arrow 1 from {:.4g},graph 0 to {:.4g},graph 1 nohead dt 2\n"
-                      "set label 1 'atoms' at {:.4g},graph 0.9 right offset -1,0\nplot {}\n",
-                      kChartStyle, low, high, low * watts, high * watts, watts, atoms, atoms, atoms, plots),
-          "svg", 720, 460));
+  draw_plot(directory + "/cost.svg", data,
+            fmt::format("{}set border 7\nset logscale xx2\nset xrange [{:.4g}:{:.4g}]\nset x2range "
+                        "[{:.4g}:{:.4g}]\nset x2tics\nset yrange [0:*]\nset key left bottom\nset xlabel "
+                        "'core seconds'\nset x2label 'J, at {:g} W a core'\nset ylabel 'error of "
+                        "displacement, %'\nset arrow 1 from {:.4g},graph 0 to {:.4g},graph 1 nohead dt 2\n"
+                        "set label 1 'atoms' at {:.4g},graph 0.9 right offset -1,0\nplot {}\n",
+                        kPlotStyle, low, high, low * watts, high * watts, watts, atoms, atoms, atoms, plots),
+            720, 460);
 }
 
 std::string block(const std::string& name, const learn::Grid& grid, const CrackState& state) {
-  std::string out = fmt::format("${} << END\n", name);
+  std::string out;
   for (size_t i = 0; i < grid.size(); ++i) {
     const Vec3 at = (grid.at(i) + state.u[i]) / kAngstrom;
     out += fmt::format("{:.4g} {:.4g} {:.4g} {:.4g}\n", at[0], at[1], state.u[i][0] / kAngstrom,
                        state.damage[i]);
   }
-  return out + "END\n";
+  return plot_block(name, out);
 }
 
 // Like the paper's Figures 6 to 8: atoms, then displacement and damage, each as seen and as predicted.
@@ -197,7 +191,7 @@ void draw_test(const Cracks& cracks, size_t test, const std::string& path) {
             "palette\n",
             one.what, source, frame.frame, source, frame.frame, one.column, size);
     }
-  write_text(path, gnuplot(data, plot + "unset multiplot\n", "png", 1100, 1500));
+  draw_plot(path, data, plot + "unset multiplot\n", 1100, 1500);
 }
 
 }  // namespace

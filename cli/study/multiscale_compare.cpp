@@ -222,8 +222,8 @@ void draw_comparison(const Comparison& compared, const std::string& directory) {
                             (foot - 5) / height, key_rows);
       plot += panel(curves, there[k], steps) + "unset label 1\n";
     }
-  write_text(directory + "/compare.svg", gnuplot(data_of(compared, curves), plot + "unset multiplot\n", "svg",
-                                                 900, static_cast<int>(height)));
+  draw_plot(directory + "/compare.svg", data_of(compared, curves), plot + "unset multiplot\n", 900,
+            static_cast<int>(height));
 }
 
 }  // namespace cuboct

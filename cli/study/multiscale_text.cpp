@@ -119,10 +119,6 @@ void add_work(Items& items, const ElementFindings& found) {
   items.add("processor time", processor, "s", "of all threads");
 }
 
-std::string block(const std::string& name, const std::string& rows) {
-  return fmt::format("${} << END\n{}END\n", name, rows);
-}
-
 void draw_stretch(const ElementFindings& found, const std::string& directory, bool stress) {
   std::string rows;
   double most = 0, least = 0;
@@ -133,17 +129,15 @@ void draw_stretch(const ElementFindings& found, const std::string& directory, bo
     }
   const Isotropic hill = hill_mean(found.material.constants);
   const double slope = stress ? hill.youngs() / 1e11 : 1 - 2 * hill.poisson();
-  write_text(
-      directory + (stress ? "/stress.svg" : "/volume.svg"),
-      gnuplot(
-          block("points", rows),
-          fmt::format("set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\nset key left top\n"
-                      "set xlabel 'strain, %'\nset ylabel '{}'\nset xrange [{:.6g}:{:.6g}]\n"
-                      "plot {:.9g}*x with lines lw 2 lc rgb '#888888' title 'linear elasticity, Hill mean', "
-                      "$points with points pt 7 ps 0.6 lc rgb '#1f5fa8' title '{} of grains'\n",
-                      stress ? "stress, GPa" : "change of volume, %", 1.05 * least, 1.05 * most, slope,
-                      found.sets.size() == 1 ? "one set" : fmt::format("{} sets", found.sets.size())),
-          "svg", 640, 400));
+  draw_plot(
+      directory + (stress ? "/stress.svg" : "/volume.svg"), plot_block("points", rows),
+      fmt::format("{}set key left top\n"
+                  "set xlabel 'strain, %'\nset ylabel '{}'\nset xrange [{:.6g}:{:.6g}]\n"
+                  "plot {:.9g}*x with lines lw 2 lc rgb '#888888' title 'linear elasticity, Hill mean', "
+                  "$points with points pt 7 ps 0.6 lc rgb '#1f5fa8' title '{} of grains'\n",
+                  kPlotStyle, stress ? "stress, GPa" : "change of volume, %", 1.05 * least, 1.05 * most,
+                  slope, found.sets.size() == 1 ? "one set" : fmt::format("{} sets", found.sets.size())),
+      640, 400);
 }
 
 void draw_front(const ElementFindings& found, const std::string& directory) {
@@ -153,17 +147,15 @@ void draw_front(const ElementFindings& found, const std::string& directory) {
       rows += fmt::format("{:.9g} {:.9g}\n", 1e9 * p.time, 1e6 * p.place);
   const FrontPoint first = found.sets[0].wave.front.front();
   const double speed = expected_of(found, hill_mean(found.material.constants));
-  write_text(
-      directory + "/front.svg",
-      gnuplot(
-          block("points", rows),
-          fmt::format(
-              "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\nset key left top\n"
-              "set xlabel 'time, ns'\nset ylabel 'front, um'\n"
-              "plot {:.9g}+{:.9g}*(x-{:.9g}) with lines lw 2 lc rgb '#888888' title 'Hill mean, {:.0f} m/s', "
-              "$points with points pt 7 ps 0.6 lc rgb '#1f5fa8' title 'front'\n",
-              1e6 * first.place, speed * 1e-3, 1e9 * first.time, speed),
-          "svg", 640, 400));
+  draw_plot(
+      directory + "/front.svg", plot_block("points", rows),
+      fmt::format(
+          "{}set key left top\n"
+          "set xlabel 'time, ns'\nset ylabel 'front, um'\n"
+          "plot {:.9g}+{:.9g}*(x-{:.9g}) with lines lw 2 lc rgb '#888888' title 'Hill mean, {:.0f} m/s', "
+          "$points with points pt 7 ps 0.6 lc rgb '#1f5fa8' title 'front'\n",
+          kPlotStyle, 1e6 * first.place, speed * 1e-3, 1e9 * first.time, speed),
+      640, 400);
 }
 
 // Where a front of the given speed is, begun with the pulse: half of the pulse's peak comes in after a
@@ -201,7 +193,7 @@ void draw_velocity(const ElementFindings& found, const std::string& directory) {
     std::string rows;
     for (const auto& [x, y, v] : snapshots[k].points)
       rows += fmt::format("{:.6g} {:.6g} {:.6g}\n", 1e6 * x, 1e6 * y, v);
-    data += block(fmt::format("at{}", k), rows);
+    data += plot_block(fmt::format("at{}", k), rows);
     const double front = 1e6 * front_at(found, snapshots[k].time);
     plot += fmt::format(
         "set title '{:.3g} ns'\nset arrow 1 from {:.6g},graph 0 to {:.6g},graph 1 nohead lw 2 lc rgb "
@@ -209,8 +201,8 @@ void draw_velocity(const ElementFindings& found, const std::string& directory) {
         "plot $at{} using 1:2:3 with points pt 5 ps {:.3g} lc palette\n",
         1e9 * snapshots[k].time, front, front, k, square_size(snapshots[k]));
   }
-  write_text(directory + "/velocity.png",
-             gnuplot(data, plot + "unset multiplot\n", "png", 900, static_cast<int>(40 + 220 * count)));
+  draw_plot(directory + "/velocity.png", data, plot + "unset multiplot\n", 900,
+            static_cast<int>(40 + 220 * count));
 }
 
 }  // namespace

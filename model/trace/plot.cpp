@@ -106,4 +106,13 @@ std::string gnuplot(const std::string& data, const std::string& plot, const std:
   return read_text(out);
 }
 
+void draw_plot(const std::string& path, const std::string& data, const std::string& plot, int width,
+               int height) {
+  write_text(path, gnuplot(data, plot, path.substr(path.size() - 3), width, height));
+}
+
+std::string plot_block(const std::string& name, const std::string& rows) {
+  return fmt::format("${} << END\n{}END\n", name, rows);
+}
+
 }  // namespace cuboct

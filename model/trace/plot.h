@@ -29,5 +29,12 @@ std::string plot_pictures(const std::vector<Image>& pictures, const std::vector<
 // or "svg".
 std::string gnuplot(const std::string& data, const std::string& plot, const std::string& kind, int width,
                     int height);
+// The same into a file, whose ending is the kind.
+void draw_plot(const std::string& path, const std::string& data, const std::string& plot, int width,
+               int height);
+// Of `data` the rows that the plot calls "$name".
+std::string plot_block(const std::string& name, const std::string& rows);
+// How most charts look.
+inline constexpr const char* kPlotStyle = "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\n";
 
 }  // namespace cuboct

@@ -193,7 +193,7 @@ std::vector<std::string> write_charts(const FitStudy& study, const Fit& fit, con
   for (const Chart& chart : charts_of(study, fit))
     for (const char* kind : {"png", "svg"}) {
       files.push_back(fmt::format("{}.{}", chart.id, kind));
-      write_text(directory + "/" + files.back(), gnuplot(chart.data, chart.plot, kind, 800, 480));
+      draw_plot(directory + "/" + files.back(), chart.data, chart.plot, 800, 480);
     }
   return files;
 }

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <set>
 
@@ -321,14 +320,9 @@ Chart weak_chart(const MachineResults& r) {
     std::ranges::stable_sort(rows, {}, [&](size_t row) { return x[row]; });
     drawn.insert(drawn.end(), rows.begin(), rows.end());
     const std::string shown = name.size() > 2 ? name.substr(2) : "the arch as it is";
-    chart.plotted.push_back({lines.size() <= 8 ? shown : "one arch",
-                             series_colour(k),
-                             static_cast<int>(k % kSymbols),
-                             7,
-                             Stroke::solid,
-                             1,
-                             {rows},
-                             {}});
+    const int symbol = static_cast<int>(k % kSymbols);
+    chart.plotted.push_back(
+        {lines.size() <= 8 ? shown : "one arch", series_colour(k), symbol, 7, Stroke::solid, 1, {rows}, {}});
     ++k;
   }
   chart.id = "weak", chart.section = "scaling";

@@ -144,14 +144,9 @@ Chart error_against_setting(const Results& results, const Parameter& parameter, 
   bool dotted = false;
   for (const Order& order : expected_orders(results, parameter, error))
     if (const auto line = order_line(results, parameter, error, order)) {
-      chart.plotted.push_back({order.label,
-                               kBlack,
-                               -1,
-                               0,
-                               dotted ? Stroke::dotted : Stroke::dashed,
-                               1.5,
-                               {},
-                               on_chart(*line, chart.x, chart.y)});
+      const Stroke stroke = dotted ? Stroke::dotted : Stroke::dashed;
+      chart.plotted.push_back(
+          {order.label, kBlack, -1, 0, stroke, 1.5, {}, on_chart(*line, chart.x, chart.y)});
       dotted = !dotted;
     }
   return chart;
@@ -194,14 +189,8 @@ Chart change_by_rung(const Results& results) {
     for (const auto& [name, order, stroke] :
          {std::tuple{"dt", 1, Stroke::dotted}, std::tuple{"dt²", 2, Stroke::dashed}}) {
       const double from = xs[first.front()], to = xs[first.back()], change = ys[first.front()];
-      chart.plotted.push_back({name,
-                               kBlack,
-                               -1,
-                               0,
-                               stroke,
-                               1.5,
-                               {},
-                               {{from, change}, {to, change * std::pow(to / from, order)}}});
+      const std::vector<Place> line{{from, change}, {to, change * std::pow(to / from, order)}};
+      chart.plotted.push_back({name, kBlack, -1, 0, stroke, 1.5, {}, line});
     }
   chart.id = chart.section = "truth";
   chart.title = "How much the truth changed with each rung of its refinement";

@@ -49,7 +49,7 @@ std::vector<std::string> draw(const StabilityMap& map, const std::string& direct
   std::vector<std::string> names;
   for (const char* kind : {"png", "svg"}) {
     const std::string path = fmt::format("{}/{}.{}", directory, map.name, kind);
-    write_text(path, gnuplot(data, plot(kind), kind, 760, 560));
+    draw_plot(path, data, plot(kind), 760, 560);
     names.push_back(path);
   }
   return names;
