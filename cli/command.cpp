@@ -5,11 +5,9 @@
 
 #include <charconv>
 
-#include "hw/engine/engine_kind.h"
 #include "hw/engine/scene_engine.h"
 #include "hw/program/options.h"
 #include "model/run/start.h"
-#include "model/run/static_engine.h"
 
 namespace cuboct {
 

@@ -2,13 +2,16 @@
 // The commands of `cuboct`, the program that has each, and what a build can be without.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "hw/program/options.h"
 
 namespace cuboct {
-
-class Command;
 
 // CMake says what is built (cli/CMakeLists.txt).
 struct BuildPart {
@@ -31,5 +34,19 @@ std::span<const CommandRow> command_rows();
 
 // A command of this program, with what its row says of it.
 Command add_command(Command& app, std::string_view name);
+// The same with its options, with which it calls `run`: what that returns is the exit code, if it does.
+template <class Options, class Run>
+std::pair<Command, std::shared_ptr<Options>> add_command(Command& app, std::string_view name, int& exit_code,
+                                                         Run run) {
+  Command command = add_command(app, name);
+  auto options = std::make_shared<Options>();
+  command.callback([options, run, &exit_code] {
+    if constexpr (std::is_void_v<decltype(run(*options))>)
+      run(*options);
+    else
+      exit_code = run(*options);
+  });
+  return {command, options};
+}
 
 }  // namespace cuboct

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <memory>
 
 #include "cli/answer.h"
 #include "cli/command.h"
@@ -105,8 +104,7 @@ int bench(const Options& options) {
 }  // namespace
 
 void add_bench(Command& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
-  Command command = add_command(app, "bench");
+  auto [command, options] = add_command<Options>(app, "bench", exit_code, bench);
   command.option("name", options->name, "a benchmark, or the first words of some; default: all", "NAME");
   command.flag("--list", options->list, "name the benchmarks");
   options->answer.add_to(command);
@@ -118,7 +116,6 @@ void add_bench(Command& app, int& exit_code) {
   command.option("--seconds", options->length.seconds, "length of a repeat, but where steps are given", "T")
       .range(1e-3, 1e4)
       .show_default();
-  command.callback([options, &exit_code] { exit_code = bench(*options); });
 }
 
 }  // namespace cuboct

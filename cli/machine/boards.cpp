@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 
 #include "cli/answer.h"
@@ -17,7 +16,6 @@
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
 #include "model/base/spelling.h"
-#include "model/base/text.h"
 #include "model/config/config.h"
 
 namespace cuboct {
@@ -180,8 +178,7 @@ const CountedPartition& BoardsFindings::fastest() const {
 }
 
 void add_boards(Command& app, int& exit_code) {
-  auto options = std::make_shared<BoardsOptions>();
-  Command command = add_command(app, "boards");
+  auto [command, options] = add_command<BoardsOptions>(app, "boards", exit_code, boards);
   options->input.add_to(command);
   options->input.add_start_to(command);
   command.option("--device", options->device, "FPGA to fill; a node is synthesised for it", "NAME");
@@ -198,7 +195,6 @@ void add_boards(Command& app, int& exit_code) {
       .check(whole_number);
   command.option("--write", options->write, "writes the arch with [boards] of the fastest", "FILE");
   command.flag("--json", options->json, "print one JSON document instead of lines for people");
-  command.callback([options, &exit_code] { exit_code = boards(*options); });
 }
 
 }  // namespace cuboct

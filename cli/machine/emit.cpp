@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "cli/command.h"
 #include "cli/machine/emit.h"
 #include "cli/machine/machine_cycles.h"
@@ -122,9 +120,8 @@ void emit(EmitOptions options) {
 
 }  // namespace
 
-void add_emit(Command& app, int&) {
-  auto options = std::make_shared<EmitOptions>();
-  Command command = add_command(app, "emit");
+void add_emit(Command& app, int& exit_code) {
+  auto [command, options] = add_command<EmitOptions>(app, "emit", exit_code, emit);
   options->input.add_to(command);
   options->input.add_start_to(command);
   command.option("--out", options->out, "directory, new or of an earlier emission", "DIR").required();
@@ -161,7 +158,6 @@ void add_emit(Command& app, int&) {
       "--prefix", options->emission.prefix,
       "begin every name of modules, packages and files with NAME_: two machines stand in one design", "NAME");
   options->answer.add_to(command);
-  command.callback([options] { emit(*options); });
 }
 
 }  // namespace cuboct

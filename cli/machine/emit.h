@@ -2,7 +2,6 @@
 // The two ways of `cuboct emit`: the arch as it is, or --fit, which a build without synthesis refuses.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 

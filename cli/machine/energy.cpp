@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -80,8 +79,7 @@ int energy(const EnergyOptions& options) {
 }  // namespace
 
 void add_energy(Command& app, int& exit_code) {
-  auto options = std::make_shared<EnergyOptions>();
-  Command command = add_command(app, "energy");
+  auto [command, options] = add_command<EnergyOptions>(app, "energy", exit_code, energy);
   options->input.add_to(command);
   options->input.add_start_to(command);
   command.option("--beside", options->beside, "a second machine description, to compare with the first",
@@ -102,7 +100,6 @@ void add_energy(Command& app, int& exit_code) {
               fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps), "N")
       .check(whole_number);
   command.flag("--json", options->json, "print one JSON document instead of lines for people");
-  command.callback([options, &exit_code] { exit_code = energy(*options); });
 }
 
 }  // namespace cuboct

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -315,8 +314,7 @@ int crosscheck(const CrosscheckOptions& options) {
 }  // namespace
 
 void add_crosscheck(Command& app, int& exit_code) {
-  auto options = std::make_shared<CrosscheckOptions>();
-  Command command = add_command(app, "crosscheck");
+  auto [command, options] = add_command<CrosscheckOptions>(app, "crosscheck", exit_code, crosscheck);
   options->input.add_to(command);
   options->input.add_start_to(command);
   options->input.add_stalls_to(command);
@@ -339,7 +337,6 @@ void add_crosscheck(Command& app, int& exit_code) {
   command.option("--out", options->out,
                  "directory that keeps each engine's trace; of a scene of stages, a directory each", "DIR");
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { exit_code = crosscheck(*options); });
 }
 
 }  // namespace cuboct

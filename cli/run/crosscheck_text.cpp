@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "cli/run/crosscheck_real.h"
 #include "cli/run/told.h"

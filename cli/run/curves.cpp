@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -65,16 +64,14 @@ std::string csv_of(const Scene& scene, const std::vector<Curve>& curves) {
   return curves_csv(curves, scene.loading ? std::nullopt : std::optional(scene.rule.dt), !reduced);
 }
 
-void add_curves(Command& app, int&) {
-  auto options = std::make_shared<CurvesOptions>();
-  Command command = add_command(app, "curves");
+void add_curves(Command& app, int& exit_code) {
+  auto [command, options] = add_command<CurvesOptions>(app, "curves", exit_code, write_curves);
   command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command
       .option("--probe", options->names,
               "one or several, with commas: probes, or their curves; default: all curves", "NAME")
       .delimiter(',');
   command.option("--out", options->out, "the CSV file; default: to the terminal", "FILE");
-  command.callback([options] { write_curves(*options); });
 }
 
 }  // namespace cuboct

@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "cli/answer.h"
 #include "cli/programs.h"
@@ -73,10 +71,9 @@ void measure(const MeasureOptions& options) {
 
 }  // namespace
 
-void add_measure(Command& app, int&) {
-  auto options = std::make_shared<MeasureOptions>();
+void add_measure(Command& app, int& exit_code) {
+  auto [command, options] = add_command<MeasureOptions>(app, "measure", exit_code, measure);
   MeasureAsked& asked = options->asked;
-  Command command = add_command(app, "measure");
   command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command
       .option("measure", asked.name,
@@ -116,7 +113,6 @@ void add_measure(Command& app, int&) {
   command.option("--out", options->out, "the CSV file; default: to the terminal", "FILE");
   command.option("--threads", options->threads, "default: one per core", "N").range(1, 4096);
   options->answer.add_to(command);
-  command.callback([options] { measure(*options); });
 }
 
 }  // namespace cuboct

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -87,9 +86,8 @@ void make(const NewOptions& options) {
 
 const std::string& template_text(const std::string& name) { return template_of(name).text; }
 
-void add_new(Command& app, int&) {
-  auto options = std::make_shared<NewOptions>();
-  Command command = add_command(app, "new");
+void add_new(Command& app, int& exit_code) {
+  auto [command, options] = add_command<NewOptions>(app, "new", exit_code, make);
   command.option("name", options->name, "the file, NAME.toml", "NAME");
   command.option("--like", options->like, "what it shows: see --list", "TEMPLATE")
       .proposed(template_names())
@@ -97,7 +95,6 @@ void add_new(Command& app, int&) {
   command.flag("--list", options->list, "tell what templates there are");
   options->answer.add_to(command);
   command.flag("--force", options->force, "replace a file of that name");
-  command.callback([options] { make(*options); });
 }
 
 }  // namespace cuboct

@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "cli/answer.h"
@@ -75,9 +74,8 @@ void draw(const PictureOptions& options) {
 
 }  // namespace
 
-void add_picture(Command& app, int&) {
-  auto options = std::make_shared<PictureOptions>();
-  Command command = add_command(app, "picture");
+void add_picture(Command& app, int& exit_code) {
+  auto [command, options] = add_command<PictureOptions>(app, "picture", exit_code, draw);
   command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command.option("--out", options->out, "the PNG file; default: DIR/picture.png", "FILE");
   command.option("--field", options->field, "strain, speed, thickness or broken (bonds)")
@@ -96,7 +94,6 @@ void add_picture(Command& app, int&) {
       .check(above_zero);
   command.option("--width", options->width, "pixels of the picture", "PX").range(400, 16384).show_default();
   options->answer.add_to(command);
-  command.callback([options] { draw(*options); });
 }
 
 }  // namespace cuboct

@@ -279,8 +279,7 @@ int run(RunOptions options) {
 }  // namespace
 
 void add_run(Command& app, int& exit_code) {
-  auto options = std::make_shared<RunOptions>();
-  Command command = add_command(app, "run");
+  auto [command, options] = add_command<RunOptions>(app, "run", exit_code, run);
   options->input.add_to(command);
   options->input.add_start_to(command);
   options->input.add_stalls_to(command);
@@ -333,7 +332,6 @@ void add_run(Command& app, int& exit_code) {
   command.flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")
       .excludes(quiet);
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { exit_code = run(*options); });
 }
 
 }  // namespace cuboct

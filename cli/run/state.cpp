@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -65,9 +64,8 @@ void save(const StateOptions& options) {
 
 }  // namespace
 
-void add_state(Command& app, int&) {
-  auto options = std::make_shared<StateOptions>();
-  Command command = add_command(app, "state");
+void add_state(Command& app, int& exit_code) {
+  auto [command, options] = add_command<StateOptions>(app, "state", exit_code, save);
   command.option("directory", options->directory, "what 'cuboct run --out' wrote", "DIR").required();
   command
       .option("--out", options->out,
@@ -76,7 +74,6 @@ void add_state(Command& app, int&) {
   command.option("--step", options->step, "the step of a frame that the run kept; default: the last", "N")
       .check(whole_number);
   options->answer.add_to(command);
-  command.callback([options] { save(*options); });
 }
 
 }  // namespace cuboct

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "cli/study/bond_fit.h"
 
-#include <chrono>
 #include <filesystem>
 
 #include "cli/study/bond_fit_text.h"
 #include "cli/study/study_command.h"
+#include "model/base/clock.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
 
 namespace cuboct {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 void draw(const BondFindings& found, const std::string& out) {
   write_convergence(found, out);
@@ -25,7 +23,7 @@ void run(const bond_fit::BondStudy& study, const std::string& out, int jobs, con
   const bond_fit::BondFit fit = bond_fit::run_bond_fit(study, out, options);
   std::vector<bond_fit::Compared> compared;
   if (study.compare) compared = bond_fit::compare_methods(study, options);
-  const BondFindings found{study, fit, compared, std::chrono::duration<double>(Clock::now() - begin).count()};
+  const BondFindings found{study, fit, compared, seconds_since(begin)};
   const Items items = items_of(found);
   write_bond_tables(found, out);
   write_text(out + "/summary.json", items.json());

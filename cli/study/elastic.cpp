@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <vector>
 
@@ -174,7 +173,7 @@ void draw(const ElasticFindings& found, const std::string& path) {
       "plot $sums with lines lw 2 lc rgb '#1f5fa8' title 'lattice sums', "
       "$strained with points pt 7 ps 0.6 lc rgb '#d9703f' title 'strained simulation'\n",
       1.1 * most / scale, unit);
-  write_text(path, gnuplot(sums + strained + "END\n", plot, path.substr(path.size() - 3), 620, 640));
+  draw_plot(path, sums + strained + "END\n", plot, 620, 640);
 }
 
 int elastic(const ElasticOptions& options) {
@@ -199,8 +198,7 @@ int elastic(const ElasticOptions& options) {
 }  // namespace
 
 void add_elastic(Command& app, int& exit_code) {
-  auto options = std::make_shared<ElasticOptions>();
-  Command command = add_command(app, "elastic");
+  auto [command, options] = add_command<ElasticOptions>(app, "elastic", exit_code, elastic);
   command.option("scene", options->scene, "scene file (TOML)", "SCENE");
   command.option("--law", options->law, "in place of a scene, of an FCC packing: the keys of its [law]",
                  "KEYS");
@@ -218,7 +216,6 @@ void add_elastic(Command& app, int& exit_code) {
                  "draw Young's modulus against direction in the x-y plane (svg, png)", "FILE");
   command.option("--threads", options->threads, "of the simulations; default: 1", "N").range(1, 4096);
   command.flag("--json", options->json, "print as JSON");
-  command.callback([options, &exit_code] { exit_code = elastic(*options); });
 }
 
 }  // namespace cuboct

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <memory>
-
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/programs.h"
@@ -107,8 +105,7 @@ int explore(const ExploreOptions& options) {
 }  // namespace
 
 void add_explore(Command& app, int& exit_code) {
-  auto options = std::make_shared<ExploreOptions>();
-  Command command = add_command(app, "explore");
+  auto [command, options] = add_command<ExploreOptions>(app, "explore", exit_code, explore);
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".study");
   add_jobs_to(command, options->jobs, "points computed at once");
@@ -125,7 +122,6 @@ void add_explore(Command& app, int& exit_code) {
   command.option("--emit", options->emit, "write the RTL project of that machine", "DIR");
   command.flag("--confirm", options->confirm, "synthesise the machine before it is chosen");
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { exit_code = explore(*options); });
 }
 
 }  // namespace cuboct

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 
 #include "cli/answer.h"
@@ -9,6 +8,7 @@
 #include "cli/programs.h"
 #include "cli/study/bond_fit.h"
 #include "cli/study/study_command.h"
+#include "model/base/clock.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/text.h"
@@ -18,17 +18,11 @@
 namespace cuboct {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 struct FitOptions {
   std::string study, out;
   int jobs = 0;
   Answer answer;
 };
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 // The page and the law so far, written anew as the search goes on; at most every few seconds, as gnuplot may
 // take longer than a small study's generation.

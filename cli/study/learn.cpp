@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
 #include <optional>
 
 #include "cli/answer.h"
@@ -89,13 +88,12 @@ void draw(const Learned& found, const std::string& directory) {
   std::string rows;
   for (const learn::CurvePoint& p : found.tried[found.best].fit.curve)
     rows += fmt::format("{} {:.6g} {:.6g}\n", p.evaluations, p.training, p.validation);
-  write_text(directory + "/curve.svg",
-             gnuplot(fmt::format("$curve << END\n{}END\n", rows),
-                     "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\nset logscale y\n"
-                     "set format y '10^{%T}'\nset xlabel 'evaluations'\nset ylabel 'residual'\n"
-                     "plot $curve using 1:2 with lines lw 2 lc rgb '#1f5fa8' title 'training', "
-                     "$curve using 1:3 with lines lw 2 lc rgb '#b03020' title 'validation'\n",
-                     "svg", 640, 400));
+  draw_plot(directory + "/curve.svg", plot_block("curve", rows),
+            "set grid lc '#dddddd' lt 1\nset border 3\nset tics nomirror\nset logscale y\n"
+            "set format y '10^{%T}'\nset xlabel 'evaluations'\nset ylabel 'residual'\n"
+            "plot $curve using 1:2 with lines lw 2 lc rgb '#1f5fa8' title 'training', "
+            "$curve using 1:3 with lines lw 2 lc rgb '#b03020' title 'validation'\n",
+            640, 400);
 }
 
 void run(const LearnOptions& options) {
@@ -125,13 +123,11 @@ void run(const LearnOptions& options) {
 }  // namespace
 
 void add_learn(Command& app, int& exit_code) {
-  auto options = std::make_shared<LearnOptions>();
-  Command command = add_command(app, "learn");
+  auto [command, options] = add_command<LearnOptions>(app, "learn", exit_code, run);
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".learn");
   add_jobs_to(command, options->jobs, "samples at once");
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { run(*options), exit_code = 0; });
 }
 
 }  // namespace cuboct

@@ -2,7 +2,6 @@
 #include "cli/study/machine_devices.h"
 
 #include <algorithm>
-#include <array>
 
 #include "cli/answer.h"
 #include "cli/machine/one_synthesis.h"

@@ -2,7 +2,6 @@
 // What a study of machines asks of FPGAs; a build without synthesis knows none.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

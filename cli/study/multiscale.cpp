@@ -112,8 +112,7 @@ void multiscale(const MultiscaleOptions& options) {
 }  // namespace
 
 void add_multiscale(Command& app, int& exit_code) {
-  auto options = std::make_shared<MultiscaleOptions>();
-  Command command = add_command(app, "multiscale");
+  auto [command, options] = add_command<MultiscaleOptions>(app, "multiscale", exit_code, multiscale);
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".multiscale");
   command.option("--threads", options->threads, "they change no bit; default: one per core", "N")
@@ -132,7 +131,6 @@ void add_multiscale(Command& app, int& exit_code) {
       .range(10, 40)
       .show_default();
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { multiscale(*options), exit_code = 0; });
 }
 
 }  // namespace cuboct

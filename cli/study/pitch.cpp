@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <memory>
 #include <thread>
 #include <utility>
 
@@ -69,14 +68,14 @@ void draw(const study::PitchAnswer& answer, const Figure& figure, const std::str
   const std::string unit = answer.runs.back().unit;
   std::string data = "$runs << END\n";
   for (const study::PitchRun& run : answer.runs) data += fmt::format("{:.8g} {:.8g}\n", run.pitch, run.value);
-  write_text(path, gnuplot(data + "END\n",
-                           fmt::format("set key off\nset grid\nset xrange [0:*]\nset xlabel 'pitch'\n"
-                                       "set ylabel {}\nset format y '%.2s %c{}'\nset format x '%.1s %cm'\n"
-                                       "plot {:.8g} + {:.8g} * x with lines lc rgb '#1f5fa8', "
-                                       "$runs with points pt 7 lc rgb '#d9703f'\n",
-                                       gnuplot_label(fmt::format("{} of {}", figure.name, figure.curve)),
-                                       unit, line.limit, line.slope),
-                           "svg", 620, 420));
+  draw_plot(path, data + "END\n",
+            fmt::format("set key off\nset grid\nset xrange [0:*]\nset xlabel 'pitch'\n"
+                        "set ylabel {}\nset format y '%.2s %c{}'\nset format x '%.1s %cm'\n"
+                        "plot {:.8g} + {:.8g} * x with lines lc rgb '#1f5fa8', "
+                        "$runs with points pt 7 lc rgb '#d9703f'\n",
+                        gnuplot_label(fmt::format("{} of {}", figure.name, figure.curve)), unit, line.limit,
+                        line.slope),
+            620, 420);
 }
 
 std::string json_of(const study::PitchAnswer& answer, const Figure& figure, const std::string& out) {
@@ -162,8 +161,7 @@ int find(const PitchOptions& options) {
 }  // namespace
 
 void add_pitch(Command& app, int& exit_code) {
-  auto options = std::make_shared<PitchOptions>();
-  Command command = add_command(app, "pitch");
+  auto [command, options] = add_command<PitchOptions>(app, "pitch", exit_code, find);
   command.option("scene", options->scene, "scene file (TOML)", "SCENE").required();
   command.option("--error", options->error, "wanted, of the figure, as 5% or 0.05", "E").show_default();
   command
@@ -184,7 +182,6 @@ void add_pitch(Command& app, int& exit_code) {
   command.option("--threads", options->threads, "of the host; default: one per core", "N").range(1, 4096);
   add_out_to(command, options->out, "scene", ".pitch");
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { exit_code = find(*options); });
 }
 
 }  // namespace cuboct

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <utility>
 
@@ -241,9 +240,8 @@ void stability(const StabilityOptions& options) {
 
 }  // namespace
 
-void add_stability(Command& app, int&) {
-  auto options = std::make_shared<StabilityOptions>();
-  Command command = add_command(app, "stability");
+void add_stability(Command& app, int& exit_code) {
+  auto [command, options] = add_command<StabilityOptions>(app, "stability", exit_code, stability);
   options->input.add_to(command);
   options->answer.add_to(command);
   command.option("--maps", options->maps, "draw maps of stable and unstable runs there", "DIR");
@@ -255,7 +253,6 @@ void add_stability(Command& app, int&) {
       .proposed({"x", "y", "z"});
   command.option("--resolution", options->resolution, "of the measured limits, relative", "R").show_default();
   command.option("--threads", options->threads, "of the engines; default: 1", "N").range(1, 4096);
-  command.callback([options] { stability(*options); });
 }
 
 }  // namespace cuboct

@@ -2,7 +2,6 @@
 // Two runs of one body side by side: the steps of which both kept a frame, and where they first differ.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "cli/view/difference.h"

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <limits>
-#include <memory>
 #include <optional>
 
 #include "cli/answer.h"
@@ -194,8 +193,7 @@ int view(const ViewOptions& options) {
 }  // namespace
 
 void add_view(Command& app, int& exit_code) {
-  auto options = std::make_shared<ViewOptions>();
-  Command command = add_command(app, "view");
+  auto [command, options] = add_command<ViewOptions>(app, "view", exit_code, view);
   command
       .option("run", options->what, "a scene to run, or what 'cuboct run --out' wrote or writes", "SCENE|DIR")
       .required();
@@ -247,7 +245,6 @@ void add_view(Command& app, int& exit_code) {
               "N")
       .range(uint64_t{2}, uint64_t{100});
   options->answer.add_to(command);
-  command.callback([options, &exit_code] { exit_code = view(*options); });
 }
 
 }  // namespace cuboct
