@@ -42,7 +42,6 @@ struct BitsOf {
 
   void put(int lsb, int width, int64_t value) { put_bits(word, lsb, width, value); }
   uint64_t get(int lsb, int width) const { return get_bits(word, lsb, width); }
-  int64_t get_signed(int lsb, int width) const { return get_signed_bits(word, lsb, width); }
   // The words that hold the first `width` bits become zeros.
   void clear(int width) {
     std::fill_n(word.begin(), std::min<size_t>(word.size(), static_cast<size_t>(width + 63) / 64),

@@ -81,8 +81,6 @@ EntryForm entry_form(const FixedTable& table);
 
 // A step that moves bits and takes no time.
 inline bool is_wire(Kind kind) { return kind == Kind::constant || kind == Kind::slice || kind == Kind::join; }
-// A step with registers of its own.
-inline bool is_block(Kind kind) { return kind == Kind::product || kind == Kind::rom; }
 
 // The steps of all nodes that `outputs` need. A `within` passes its input on, so that where the graph's pair
 // does not count values are any.

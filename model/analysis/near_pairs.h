@@ -38,7 +38,6 @@ class NearPairs {
 
   // What readings cost: lists so far, and pairs in the last, each of which a state's reading looks at once.
   uint64_t lists_made() const { return lists_made_; }
-  uint64_t pairs_listed() const { return other_.size(); }
 
  private:
   // Modulo 2^64, as all that is wanted are differences over a few cells.

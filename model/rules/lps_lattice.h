@@ -14,9 +14,8 @@ namespace cuboct {
 struct CubicModuli {
   double c11 = 0, c12 = 0, c44 = 0;
   double bulk() const { return (c11 + 2 * c12) / 3; }
-  double shear() const { return c44; }                    // of a simple shear along the axes
-  double prime() const { return (c11 - c12) / 2; }        // C', of the other shear
-  double zener() const { return 2 * c44 / (c11 - c12); }  // 1: isotropic
+  double shear() const { return c44; }              // of a simple shear along the axes
+  double prime() const { return (c11 - c12) / 2; }  // C', of the other shear
 };
 
 // By the energy of even strain, W = (C1 (lambda - mu)/2d) tr^2 + (C2 mu/4m) sum w V (r.E.r)^2/r^2, so

@@ -46,8 +46,6 @@ class CoarseGrain {
 
   // Weights for displacements `u` of the atoms.
   void look(std::span<const Vec3> u, const CrackSight& sight);
-  // Back to those of equation 4.
-  void look_away() { weight_ = cone_; }
 
   // Equation 10, mass per volume, and equation 11, per volume.
   std::vector<double> density() const;
