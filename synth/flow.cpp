@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "synth/kept_files.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -4,7 +4,6 @@
 // block, and the blocks sum up to the whole.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <stdexcept>
 
 #include "emu/lattice/impl.h"
 #include "model/base/error.h"

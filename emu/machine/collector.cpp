@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <span>
-#include <stdexcept>
 #include <tuple>
 
 #include "model/program/integer_program.h"

@@ -4,9 +4,7 @@
 #pragma once
 
 #include <deque>
-#include <memory>
 #include <utility>
-#include <vector>
 
 #include "emu/machine/node_model.h"
 #include "hw/plan/plan.h"

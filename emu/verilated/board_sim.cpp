@@ -9,8 +9,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <cmath>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 

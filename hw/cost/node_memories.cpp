@@ -2,7 +2,6 @@
 #include "hw/cost/node_memories.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "hw/cost/rule_work.h"
 #include "hw/rtl/rtl_design.h"

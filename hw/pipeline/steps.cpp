@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <initializer_list>
 
 #include "hw/pipeline/step_maker.h"
 #include "model/base/hash.h"

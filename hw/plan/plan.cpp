@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
 
 #include "hw/arch/cell_box.h"
 #include "hw/cost/pair_work.h"

@@ -2,8 +2,6 @@
 // A rule of text in a plan: what each of its rounds asks of a node. docs/reference/node.md, "Rounds".
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "hw/pipeline/schedule.h"
 #include "hw/plan/plan.h"
 #include "model/base/hash.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "hw/rtl/rtl_design.h"
 #include "model/base/fixed_math.h"

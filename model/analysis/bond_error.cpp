@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/analysis/bond_error.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>

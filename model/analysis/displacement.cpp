@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "model/analysis/near_within.h"
 #include "model/base/error.h"
+#include "model/contract/nearest_image.h"
 
 namespace cuboct {
 namespace {

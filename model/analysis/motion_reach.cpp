@@ -13,7 +13,6 @@
 #include "model/analysis/pieces.h"
 #include "model/analysis/shadow.h"
 #include "model/base/quantity_text.h"
-#include "model/contract/law.h"
 #include "model/rules/rounds_rule.h"
 
 namespace cuboct {

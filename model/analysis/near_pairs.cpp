@@ -2,7 +2,6 @@
 #include "model/analysis/near_pairs.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 

@@ -5,7 +5,7 @@
 
 #include "model/analysis/body_reading.h"
 #include "model/base/error.h"
-#include "model/base/parallel.h"
+#include "model/base/resources.h"
 
 namespace cuboct {
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 #include "model/analysis/bond_error.h"
 #include "model/analysis/clusters.h"

@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <variant>
 
-#include "model/contract/law.h"
 #include "model/contract/neighbours.h"
 
 namespace cuboct {

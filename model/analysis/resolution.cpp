@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/analysis/strain.h"
 #include "model/contract/law.h"
 #include "model/contract/neighbours.h"
 

@@ -2,7 +2,6 @@
 #include "model/analysis/strain.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "model/base/dense.h"

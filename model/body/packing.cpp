@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/body/packing.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cmath>
 #include <limits>

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 
-#include "model/base/fixed_math.h"
 #include "model/contract/format_cures.h"
 #include "model/contract/law.h"
 

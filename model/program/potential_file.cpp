@@ -14,7 +14,6 @@
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/input_file.h"
-#include "model/base/spelling.h"
 #include "model/base/text.h"
 
 namespace cuboct {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "model/base/parallel.h"
 #include "model/real/near_walk.h"

@@ -6,10 +6,8 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <string>
 
 #include "model/base/error.h"

@@ -10,7 +10,6 @@
 
 #include "model/base/error.h"
 #include "model/base/resources.h"
-#include "model/base/spelling.h"
 #include "model/config/name.h"
 #include "model/contract/law.h"
 #include "model/scene/scene_particles.h"

@@ -2,8 +2,6 @@
 // How a scene's box deforms: `deform` of [box] and of stages.
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "model/rules/rounds_rule.h"
 #include "model/scene/scene_parts.h"
 

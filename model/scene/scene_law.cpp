@@ -10,7 +10,6 @@
 
 #include "model/base/error_parts.h"
 #include "model/base/mat3.h"
-#include "model/base/spelling.h"
 #include "model/contract/law.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"

@@ -11,7 +11,6 @@
 #include <cmath>
 
 #include "model/base/error.h"
-#include "model/base/spelling.h"
 #include "model/base/text.h"
 
 namespace cuboct {

@@ -2,9 +2,7 @@
 // [rule] of a scene: a rule of several rounds in the place of [law].
 #include <fmt/format.h>
 
-#include "model/contract/law.h"
 #include "model/scene/scene_parts.h"
-#include "model/solid/dynamical_matrix.h"
 
 namespace cuboct {
 namespace {

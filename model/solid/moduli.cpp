@@ -4,7 +4,6 @@
 #include "model/base/mat3.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>

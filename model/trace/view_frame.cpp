@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/trace/view_frame.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -3,8 +3,6 @@
 // nearest neighbours alone.
 #pragma once
 
-#include <array>
-
 #include "model/base/mat3.h"
 #include "model/scene/scene.h"
 #include "study/law_fit/drawn_law.h"

@@ -2,7 +2,6 @@
 // CMA-ES (pagmo) that is asked for a generation and then told what its samples are worth.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 

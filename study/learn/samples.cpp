@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/learn/samples.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace cuboct::learn {
 
 Vec3 Grid::at(size_t k) const {

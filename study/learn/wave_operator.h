@@ -9,7 +9,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 #include <vector>
 
 #include "study/learn/samples.h"

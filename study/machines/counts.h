@@ -4,9 +4,7 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "hw/cost/energy.h"
 #include "hw/cost/memory_traffic.h"

@@ -2,7 +2,6 @@
 #include "study/potential_fit/granular_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 namespace cuboct::bond_fit {

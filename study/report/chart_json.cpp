@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "study/report/chart_json.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 

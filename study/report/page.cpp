@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <stdexcept>
-
 #include "model/base/filled_frame.h"
 #include "model/base/json.h"
 #include "model/base/output.h"

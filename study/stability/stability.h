@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "hw/arch/arch.h"
 #include "model/real/reference.h"

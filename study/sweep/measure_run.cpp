@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "study/sweep/measure_run.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
 
 #include "emu/lattice/run.h"
 #include "hw/engine/scene_engine.h"
-#include "model/analysis/strain.h"
 #include "study/sweep/gpu_program.h"
 
 namespace cuboct::study {

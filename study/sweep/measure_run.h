@@ -2,7 +2,6 @@
 // One run of one case, in any engine, and what a study keeps of it.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 

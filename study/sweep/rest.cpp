@@ -7,7 +7,6 @@
 
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
-#include "model/contract/bond.h"
 #include "model/real/balance.h"
 #include "study/stability/stability.h"
 #include "study/sweep/measure_run.h"

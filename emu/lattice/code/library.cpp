@@ -10,7 +10,6 @@
 #include "model/base/host_compiler.h"
 #include "model/base/module.h"
 #include "model/base/output.h"
-#include "model/base/text.h"
 
 namespace cuboct::emu {
 namespace {

@@ -2,7 +2,6 @@
 #include "emu/lattice/rounds/pair_pass.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 

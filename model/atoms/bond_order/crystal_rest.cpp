@@ -2,7 +2,6 @@
 #include "model/atoms/bond_order/crystal_rest.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numbers>
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "model/atoms/bond_order/diamond_strain.h"
 
-#include <cmath>
-
 namespace cuboct {
 
 BondPath diamond_path(double edge, const Mat3& gradient, const Vec3& shift) {

@@ -2,7 +2,6 @@
 #include "model/atoms/multiscale/element_motion.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <utility>
 
 #include "model/atoms/multiscale/element_stiffness.h"

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <map>
 #include <optional>
-#include <sstream>
 
 #include "model/base/error.h"
 #include "model/config/config.h"
