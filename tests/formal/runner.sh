@@ -25,8 +25,9 @@ module counter_formal (input logic clk_i, input logic push_i);
   end
 endmodule
 EOF
-table() {  # METHOD DEPTH BODY COVER MUTANT_FIND: writes the table and the harness
+table() {  # METHOD DEPTH BODY COVER MUTANT_FIND [MUTANT_REPLACE]: writes the table and the harness
   { echo "\`define BODY $3"; echo "\`define COVER $4"; cat counter.sv; } > harness.sv
+  local replace=${6-"assign empty_o = 1'b1;"}
   cat > table.toml <<EOF
 [[proof]]
 name = "counter"
@@ -37,13 +38,7 @@ lib = ["cuboct_fifo"]
 method = "$1"
 depth = $2
 cover = 8
-[[proof.mutants]]
-name = "always"
-file = "cuboct_fifo.sv"
-find = "$5"
-replace = "assign empty_o = 1'b1;"
-fails = "a_true"
-depth = 8
+mutants = [["always", "cuboct_fifo", "a_true", 8, "$5", "$replace"]]
 EOF
 }
 bad=0
@@ -82,8 +77,7 @@ table combinational 1 "" "" "$find"
 expect 1 '^FAIL  counter +not combinational: there are registers' counter --no-mutants
 
 # A mutant that changes nothing that matters, and one whose place is not there.
-table pdr 1 "" "" "$find"
-sed -i "s/replace = .*/replace = \"assign empty_o = !(count_q != '0);\"/" table.toml
+table pdr 1 "" "" "$find" "assign empty_o = !(count_q != '0);"
 expect 1 '^FAIL  counter/always +not seen in 8 cycles' counter
 table pdr 1 "" "" "no such line"
 expect 1 "^FAIL  counter/always +cuboct_fifo.sv holds 'no such line' 0 times, not once" counter/always
@@ -92,13 +86,17 @@ table pdr 1 "" "" "$find"
 expect 0 '^1 mutants stand in the library$' --check
 
 # Tables that are wrong.
-sed -i '/proof.mutants/,$d' table.toml
+sed -i '/^mutants/d' table.toml
 expect 2 "^prove: table.toml: proof 'counter' has no mutant: a proof that cannot fail proves nothing\$" counter
 table guess 1 "" "" "$find"
 expect 2 "^prove: table.toml: proof 'counter': method 'guess' is none of induction, pdr, bmc, combinational\$" counter
 table pdr 1 "" "" "$find"
 sed -i 's/^depth = 1/dept = 1/' table.toml
 expect 2 "^prove: table.toml: proof 'counter': unknown key 'dept'\$" counter
+
+table pdr 1 "" "" "$find"
+sed -i 's/, 8, /, /' table.toml
+expect 2 "^prove: table.toml: proof 'counter': a mutant is \\[name, module, property, cycles, text, other text\\]\$" counter
 
 # A tool that is missing.
 table pdr 1 "" "" "$find"
