@@ -4,293 +4,88 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <map>
 #include <stdexcept>
 
 #include "model/contract/golden.h"
-#include "tests/support/block.h"
 #include "tests/support/dice.h"
+#include "tests/support/recipe.h"
 
 namespace cuboct::test {
 namespace {
 
-struct Recipe {
-  Features features{.size = {2, 2, 2}, .jitter = 0.08, .speed = 0.2, .margin = 1.0};
-  Arch arch;
-  Cell periodic{};    // axes that repeat
-  bool lone = false;  // particle 0 flies alone along the diagonal, and crosses three faces in one step
-  uint64_t steps = 30;
-};
-
-void narrow(Arch& arch) {
-  arch.narrow_memories = true;
-  arch.halos = Halos::phases;
-  arch.filter_lanes = arch.force_pipes = arch.streamers = 1;
-  arch.overlap = false;
-}
-
-const std::map<std::string, std::function<void(Recipe&)>>& recipes() {
-  using R = Recipe&;
-  static const std::map<std::string, std::function<void(R)>> all{
-      {"undamped_2x2x2", [](R r) { r.features.margin = 0, r.steps = 15; }},
-      {"lattice_3x2x1",
-       [](R r) {
-         r.features.size = {3, 2, 1};
-         r.features.margin = 0;
-         r.steps = 15;
-       }},
-      {"single_node",
-       [](R r) {
-         r.features.size = {1, 1, 1};
-         r.features.margin = 0.1;
-         r.arch.cell_edge = 12;
-         r.steps = 40;
-       }},
-      {"damped", [](R r) { r.features.damping = 0.2; }},
-      {"two_materials", [](R r) { r.features.two_materials = true; }},
-      {"contact",
-       [](R r) {
-         r.features.two_materials = r.features.contact = true;
-         r.features.damping = 0.2;
-         r.features.speed = 0.3;
-       }},
-      {"masses",
-       [](R r) {
-         r.features.two_materials = r.features.masses = true;
-         r.features.speed = 0.3;
-       }},
-      {"laws",
-       [](R r) {
-         r.features.two_materials = r.features.laws = true;
-         r.features.damping = 0.2;
-         r.features.speed = 0.3;
-       }},
-      {"held_and_moved", [](R r) { r.features.held = true; }},
-      {"force_held", [](R r) { r.features.force_held = r.features.gravity = true; }},
-      {"octaves", [](R r) { r.arch.table.shape = TableChoice::Shape::octaves; }},
-      {"degree_2", [](R r) { r.arch.table.degree = 2, r.arch.table.index_bits = 6; }},
-      {"two_pipes", [](R r) { r.arch.force_pipes = 2; }},
-      {"several_passes", [](R r) { r.arch.filter_lanes = 2; }},
-      {"one_lane", [](R r) { r.arch.filter_lanes = 1; }},
-      {"narrow_links", [](R r) { r.arch.link_bits = 17; }},
-      {"wide_links", [](R r) { r.arch.link_bits = 1000; }},
-      {"no_overlap", [](R r) { r.arch.overlap = false; }},
-      {"queue_of_one", [](R r) { r.arch.queue_depth = 1; }},
-      {"tight_capacity", [](R r) { r.arch.capacity = 6, r.features.margin = 0, r.steps = 15; }},
-      {"ring_of_3",
-       [](R r) {
-         r.features.size = {4, 1, 1};
-         r.periodic = {1, 0, 0};
-       }},
-      {"periodic_27",
-       [](R r) {
-         r.features.size = {4, 4, 4};
-         r.periodic = {1, 1, 1};
-         r.arch.capacity = 20;
-         r.steps = 8;
-       }},
-      {"hot_gas",
-       [](R r) {
-         r.features.jitter = 0.1;
-         r.features.speed = 0.6;
-         r.features.margin = 4;
-         r.steps = 40;
-       }},
-      {"lone_diagonal", [](R r) { r.lone = true, r.features.margin = 2; }},
+// One feature or awkward size each: what makes it of the usual block.
+const std::map<std::string, const char*>& recipes() {
+  static const std::map<std::string, const char*> all{
+      {"undamped_2x2x2", "margin=0 steps=15"},
+      {"lattice_3x2x1", "size=3x2x1 margin=0 steps=15"},
+      {"single_node", "size=1x1x1 margin=0.1 cell_edge=12 steps=40"},
+      {"damped", "damping=0.2"},
+      {"two_materials", "two_materials"},
+      {"contact", "two_materials contact damping=0.2 speed=0.3"},
+      {"masses", "two_materials masses speed=0.3"},
+      {"laws", "two_materials laws damping=0.2 speed=0.3"},
+      {"held_and_moved", "held"},
+      {"force_held", "force_held gravity"},
+      {"octaves", "octaves"},
+      {"degree_2", "degree=2 index_bits=6"},
+      {"two_pipes", "pipes=2"},
+      {"several_passes", "lanes=2"},
+      {"one_lane", "lanes=1"},
+      {"narrow_links", "link_bits=17"},
+      {"wide_links", "link_bits=1000"},
+      {"no_overlap", "no_overlap"},
+      {"queue_of_one", "queue=1"},
+      {"tight_capacity", "capacity=6 margin=0 steps=15"},
+      {"ring_of_3", "size=4x1x1 periodic=1x0x0"},
+      {"periodic_27", "size=4x4x4 periodic=1x1x1 capacity=20 steps=8"},
+      {"hot_gas", "jitter=0.1 speed=0.6 margin=4 steps=40"},
+      {"lone_diagonal", "lone margin=2"},
       // Halos used on arrival: several passes, several beats, checked links, rings, crowded queues.
-      {"arrival_one",
-       [](R r) {
-         r.features.jitter = 0.1;
-         r.features.speed = 0.6;
-         r.features.margin = 4;
-         r.steps = 40;
-         r.arch.halos = Halos::arrival;
-         r.arch.filter_lanes = 4;
-         r.arch.force_pipes = 3;
-         r.arch.queue_depth = 2;
-       }},
+      {"arrival_one", "jitter=0.1 speed=0.6 margin=4 steps=40 arrival lanes=4 pipes=3 queue=2"},
       {"arrival_two",
-       [](R r) {
-         r.features.speed = 0.4;
-         r.features.margin = 2;
-         r.steps = 20;
-         r.features.damping = 0.2;
-         r.features.two_materials = r.features.masses = r.features.held = true;
-         r.arch.halos = Halos::arrival;
-         r.arch.streamers = r.arch.force_pipes = 2;
-         r.arch.filter_lanes = 5;
-         r.arch.link_bits = 40;
-         r.arch.table.degree = 2, r.arch.table.index_bits = 7;
-       }},
+       "speed=0.4 margin=2 steps=20 damping=0.2 two_materials masses held arrival streamers=2 pipes=2 "
+       "lanes=5 "
+       "link_bits=40 degree=2 index_bits=7"},
       {"arrival_ring",
-       [](R r) {
-         r.features.size = {4, 4, 4};
-         r.features.speed = 0.4;
-         r.periodic = {1, 1, 1};
-         r.arch.halos = Halos::arrival;
-         r.arch.streamers = 2;
-         r.arch.force_pipes = 4;
-         r.arch.capacity = 20;
-         r.arch.link_check = LinkCheck::retry;
-         r.steps = 8;
-       }},
-      {"flat_arrival",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {4, 3, 1};
-         r.features.speed = 0.5;
-         r.features.margin = 3;
-         r.arch.halos = Halos::arrival;
-         r.arch.streamers = r.arch.force_pipes = 2;
-         r.arch.link_bits = 23;
-         r.arch.queue_depth = 1;
-       }},
-      {"flat_arrival_shared",
-       [](R r) {
-         r.features.flat = r.features.force_held = true;
-         r.features.size = {3, 3, 1};
-         r.arch.halos = Halos::arrival;
-         r.arch.multipliers = Multipliers::shared;
-       }},
+       "size=4x4x4 speed=0.4 periodic=1x1x1 arrival streamers=2 pipes=4 capacity=20 retry steps=8"},
+      {"flat_arrival", "flat size=4x3x1 speed=0.5 margin=3 arrival streamers=2 pipes=2 link_bits=23 queue=1"},
+      {"flat_arrival_shared", "flat force_held size=3x3x1 arrival shared"},
       // Flat ones: no third axis.
-      {"flat",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {3, 3, 1};
-       }},
-      {"flat_gas",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {4, 4, 1};
-         r.features.jitter = 0.1;
-         r.features.speed = 0.6;
-         r.features.margin = 4;
-         r.steps = 40;
-       }},
-      {"flat_ring",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {4, 4, 1};
-         r.periodic = {1, 1, 0};
-         r.arch.overlap = false;
-         r.arch.link_bits = 19;
-         r.arch.filter_lanes = 2;
-       }},
+      {"flat", "flat size=3x3x1"},
+      {"flat_gas", "flat size=4x4x1 jitter=0.1 speed=0.6 margin=4 steps=40"},
+      {"flat_ring", "flat size=4x4x1 periodic=1x1x0 no_overlap link_bits=19 lanes=2"},
       {"flat_rich_damped",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {4, 3, 1};
-         r.features.damping = 0.2;
-         r.features.speed = 0.5;
-         r.features.two_materials = r.features.contact = r.features.masses = r.features.held = true;
-         r.arch.force_pipes = 2;
-         r.arch.filter_lanes = 3;
-         r.arch.capacity = 13;
-         r.arch.queue_depth = 1;
-       }},
+       "flat size=4x3x1 damping=0.2 speed=0.5 two_materials contact masses held pipes=2 lanes=3 capacity=13 "
+       "queue=1"},
       {"flat_rich_force_held",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {3, 3, 1};
-         r.features.force_held = true;
-         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
-         r.arch.link_bits = 24;
-         r.arch.overlap = false;
-       }},
-      {"flat_shared",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {3, 3, 1};
-         r.features.damping = 0.2;
-         r.arch.multipliers = Multipliers::shared;
-         r.arch.queue_depth = 2;
-       }},
+       "flat size=3x3x1 force_held octaves degree=2 index_bits=7 link_bits=24 no_overlap"},
+      {"flat_shared", "flat size=3x3x1 damping=0.2 shared queue=2"},
       {"flat_narrow",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {4, 3, 1};
-         r.features.speed = 0.5;
-         r.features.margin = 3;
-         r.arch.link_bits = 11;
-         r.arch.multipliers = Multipliers::shared;
-         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
-         narrow(r.arch);
-       }},
+       "flat size=4x3x1 speed=0.5 margin=3 link_bits=11 shared octaves degree=2 index_bits=7 narrow"},
       // Several cells a node, whose pairs wait for multipliers.
       {"brick_serial",
-       [](R r) {
-         r.features.damping = 0.2;
-         r.features.speed = 0.5;
-         r.features.two_materials = r.features.masses = r.features.held = true;
-         r.arch.multipliers = Multipliers::serial;
-         r.arch.force_pipes = 2;
-         r.arch.queue_depth = 2;
-         r.arch.brick = {2, 1, 2};
-         r.steps = 12;
-       }},
-      {"brick_shared",
-       [](R r) {
-         r.features.flat = true;
-         r.features.size = {4, 3, 1};
-         r.features.damping = 0.2;
-         r.features.speed = 0.5;
-         r.features.margin = 3;
-         r.arch.multipliers = Multipliers::shared;
-         r.arch.filter_lanes = 3;
-         r.arch.queue_depth = 1;
-         r.arch.brick = {2, 2, 1};
-       }},
-      // Rich ones, of which the RTL is built.
-      {"rich_narrow",
-       [](R r) {
-         r.features.damping = 0.2;
-         r.features.speed = 0.5;
-         r.features.two_materials = r.features.masses = r.features.laws = r.features.held = true;
-         r.arch.multipliers = Multipliers::serial;
-         r.arch.link_bits = 21;  // the sign of x lies in two words
-         narrow(r.arch);
-       }},
+       "damping=0.2 speed=0.5 two_materials masses held serial pipes=2 queue=2 brick=2x1x2 steps=12"},
+      {"brick_shared", "flat size=4x3x1 damping=0.2 speed=0.5 margin=3 shared lanes=3 queue=1 brick=2x2x1"},
+      // Rich ones, of which the RTL is built. In the first the sign of x lies in two words.
+      {"rich_narrow", "damping=0.2 speed=0.5 two_materials masses laws held serial link_bits=21 narrow"},
       {"rich_shared",
-       [](R r) {
-         r.features.damping = 0.2;
-         r.features.speed = 0.3;
-         r.features.two_materials = r.features.contact = r.features.laws = r.features.held = true;
-         r.arch.multipliers = Multipliers::shared;
-         r.arch.widths.filter_frac = 5;
-         r.arch.filter_lanes = 3;
-         r.arch.queue_depth = 2;
-         r.arch.link_bits = 40;
-       }},
-      {"rich_damped",
-       [](R r) {
-         r.features.damping = 0.2;
-         r.features.speed = 0.5;
-         r.features.two_materials = r.features.contact = r.features.masses = r.features.held = true;
-         r.arch.force_pipes = 2;
-         r.arch.filter_lanes = 4;
-         r.arch.capacity = 13;
-       }},
+       "damping=0.2 speed=0.3 two_materials contact laws held shared filter_frac=5 lanes=3 queue=2 "
+       "link_bits=40"},
+      {"rich_damped", "damping=0.2 speed=0.5 two_materials contact masses held pipes=2 lanes=4 capacity=13"},
       {"rich_force_held",
-       [](R r) {
-         r.features.force_held = r.features.gravity = true;
-         r.features.two_materials = r.features.masses = true;
-         r.arch.table = {.shape = TableChoice::Shape::octaves, .degree = 2, .index_bits = 7};
-         r.arch.link_bits = 24;
-         r.arch.overlap = false;
-       }},
+       "force_held gravity two_materials masses octaves degree=2 index_bits=7 link_bits=24 no_overlap"},
       {"rich_ring",
-       [](R r) {
-         r.features.size = {4, 1, 2};
-         r.features.two_materials = r.features.laws = true;
-         r.periodic = {1, 0, 0};
-         r.arch.queue_depth = 1;
-         r.arch.filter_lanes = 3;
-         r.arch.force_pipes = 3;
-         r.arch.table = {.shape = TableChoice::Shape::uniform, .degree = 2, .index_bits = 6};
-       }},
+       "size=4x1x2 two_materials laws periodic=1x0x0 queue=1 lanes=3 pipes=3 uniform degree=2 index_bits=6"},
   };
   return all;
+}
+
+Recipe usual() {
+  Recipe r;
+  r.features = {.size = {2, 2, 2}, .jitter = 0.08, .speed = 0.2, .margin = 1.0};
+  r.steps = 30;
+  return r;
 }
 
 Case cook(const std::string& name, const Recipe& recipe) {
@@ -326,7 +121,7 @@ Setup with_particles(Scene& scene, const Arch& arch, std::vector<Vec3> x, std::v
 
 std::vector<std::string> case_names() {
   std::vector<std::string> names;
-  for (const auto& [name, change] : recipes()) names.push_back(name);
+  for (const auto& [name, words] : recipes()) names.push_back(name);
   return names;
 }
 
@@ -339,9 +134,9 @@ Case make_case(const std::string& name) {
     c.name = name;
     return c;
   }
-  Recipe recipe;
+  Recipe recipe = usual();
   const size_t dot = name.find('.');
-  recipes().at(name.substr(0, dot))(recipe);
+  season(recipe, recipes().at(name.substr(0, dot)));
   const std::string variant = dot == std::string::npos ? "" : name.substr(dot);
   if (variant == ".snug") recipe.features.margin = 0;
   if (variant == ".retry") recipe.arch.link_check = LinkCheck::retry;
@@ -351,7 +146,7 @@ Case make_case(const std::string& name) {
 
 Case random_recipe(uint64_t seed, bool flat) {
   Dice dice(seed);
-  Recipe r;
+  Recipe r = usual();
   r.features.flat = flat;
   r.features.seed = seed;
   r.features.size = {dice.draw(1, 3), dice.draw(1, 3), dice.draw(1, 2)};

@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "tests/verify/small_case.h"
 
-#include <functional>
 #include <map>
 
-#include "tests/support/block.h"
+#include "tests/support/recipe.h"
 
 namespace cuboct::test {
 namespace {
 
-struct Small {
-  Features features{.size = {2, 1, 1}, .cutoff = 1.4, .jitter = 0.05, .speed = 0.3, .margin = 0};
-  Arch arch;
-  uint64_t steps = 6;
-  std::function<void(Scene&)> change{};  // the scene, before it is quantised
-  std::function<void(Setup&)> place{};   // where particles start
-};
+constexpr const char* kSmallArch =
+    "capacity=7 lanes=2 queue=2 link_bits=13 guard=4 difference_frac=9 velocity_bits=17 sum_bits=17 uniform "
+    "degree=1 index_bits=5";
 
-Arch small_arch() {
-  Arch arch;
-  arch.capacity = 7;
-  arch.filter_lanes = 2;
-  arch.queue_depth = 2;
-  arch.link_bits = 13;
-  Widths& w = arch.widths;
-  w.position_frac = 12, w.guard = 4, w.difference_frac = 9;
-  w.velocity_bits = 17, w.relative_velocity_frac = 12, w.relative_velocity_bits = 12;
-  w.strength_bits = 12, w.sum_bits = 17, w.displacement_bits = 18;
+Recipe smallest() {
+  Recipe r;
+  r.features = {.size = {2, 1, 1}, .cutoff = 1.4, .jitter = 0.05, .speed = 0.3, .margin = 0};
+  r.steps = 6;
+  season(r, kSmallArch);
+  Widths& w = r.arch.widths;
+  w.position_frac = 12, w.relative_velocity_frac = 12, w.relative_velocity_bits = 12;
+  w.strength_bits = 12, w.displacement_bits = 18;
   w.scale_frac = 8;
-  arch.table = {.shape = TableChoice::Shape::uniform, .degree = 1, .index_bits = 5};
-  return arch;
+  return r;
 }
 
 // A particle of the neighbour node in each direction gets the offset of one of node 0: where the cell's edge
@@ -139,23 +131,35 @@ void set_velocities(Setup& setup, int64_t v, bool by_turns, int first = 0) {
                (v - 200 * a - 7 * int64_t{p.id});
 }
 
-// One rule and machine with damping and PD, of which every number is near its limit; what a scene sets is
-// what it makes fail, of several particles, pairs and axes in one step.
-void failing(Small& s) {
-  s.features.damping = 8;
-  s.features.force_held = true;
-  s.features.speed = 0;
-  s.arch.force_pipes = 2;
-  s.arch.widths.sum_bits = 11;
-  s.steps = 3;
+// Those of the left half fly to the right, until one more comes than a node holds.
+void press(Scene& scene) {
+  for (size_t k = 0; k < scene.body.size(); ++k)
+    scene.body.v[k] = Vec3(scene.body.x[k].x() < 1.3 ? 0.5 : 0, 0, 0);
 }
 
-// Memories of words of a beat. With the 13 bits of small_arch the sign of x lies in two words, that of y in
-// one.
-void narrow(Arch& arch) {
-  arch.narrow_memories = true;
-  arch.filter_lanes = arch.force_pipes = 1;
-  arch.overlap = false;
+template <int64_t V, bool by_turns, int first = 0>
+void fly_at(Setup& setup) {
+  set_velocities(setup, V, by_turns, first);
+}
+
+void meet_close_together(Setup& setup) {
+  set_velocities(setup, 15000, true);
+  close_together(setup);
+}
+
+constexpr int64_t kMostV = (1 << 16) - 1, kMostU = (1 << 17) - 1;
+
+void far_from_rest(Setup& setup) {
+  set_velocities(setup, 30000, false);
+  for (Particle& p : setup.initial.particles)
+    if (setup.plan.rule.types[p.type].pd)
+      for (int a = 0; a < 3; ++a) p.u[a] = (p.id + static_cast<uint32_t>(a)) % 3 == 0 ? 5 : kMostU - 3 * a;
+}
+
+template <int64_t sign>
+void near_most_v(Setup& setup) {
+  for (Particle& p : setup.initial.particles)
+    for (int a = 0; a < 3; ++a) p.v[a] = sign * (kMostV - (p.id * 7 + static_cast<uint32_t>(a) * 5) % 13);
 }
 
 // Another case's scene and machine in nodes of several cells.
@@ -173,385 +177,95 @@ const std::map<std::string, std::pair<const char*, Cell>>& bricks() {
   return all;
 }
 
-constexpr int64_t kMostV = (1 << 16) - 1, kMostU = (1 << 17) - 1;
+// One rule and machine with damping and PD, of which every number is near its limit; where particles start is
+// what it makes fail, of several particles, pairs and axes in one step.
+constexpr const char* kFailing = "damping=8 force_held speed=0 pipes=2 sum_bits=11 steps=3";
 
-using Recipe = std::function<void(Small&)>;
-const std::map<std::string, Recipe>& recipes() {
-  using Shape = TableChoice::Shape;
-  using S = Small&;
-  static const std::map<std::string, Recipe> all{
-      {"plain", [](S) {}},
-      {"damped",
-       [](S s) {
-         s.features.damping = 0.2;
-         s.features.two_materials = s.features.held = true;
-         s.arch.force_pipes = 2;
-       }},
-      {"pd",
-       [](S s) {
-         s.features.force_held = true;
-         s.arch.overlap = false;
-         s.arch.table.degree = 2;
-       }},
-      {"flat",
-       [](S s) {
-         s.features.flat = true;
-         s.features.size = {2, 2, 1};
-       }},
+struct Row {
+  const char* words;
+  void (*place)(Setup&) = nullptr;   // where particles start
+  void (*change)(Scene&) = nullptr;  // the scene, before it is quantised
+  const char* like = nullptr;        // the row that this one adds to
+};
+
+const std::map<std::string, Row>& rows() {
+  static const std::map<std::string, Row> all{
+      {"plain", {""}},
+      {"damped", {"damping=0.2 two_materials held pipes=2"}},
+      {"pd", {"force_held no_overlap degree=2"}},
+      {"flat", {"flat size=2x2x1"}},
       // Both end where a particle leaves: a node's own fault passes the checks of its links.
-      {"detect",
-       [](S s) {
-         s.arch.link_check = LinkCheck::detect;
-         s.features.speed = 0.45;
-         s.steps = 20;
-       }},
-      {"retry",
-       [](S s) {
-         s.arch.link_check = LinkCheck::retry;
-         s.features.speed = 0.45;
-         s.steps = 20;
-       }},
-      // Nodes of 2^k slots that are full from the start, until one more comes.
-      {"full",
-       [](S s) {
-         s.arch.link_check = LinkCheck::retry;
-         s.arch.capacity = 4;
-         s.features.speed = 0.45;
-         s.steps = 20;
-         s.change = [](Scene& scene) {
-           for (size_t k = 0; k < scene.body.size(); ++k)
-             scene.body.v[k] = Vec3(scene.body.x[k].x() < 1.3 ? 0.5 : 0, 0, 0);
-         };
-       }},
+      {"detect", {"detect speed=0.45 steps=20"}},
+      {"retry", {"retry speed=0.45 steps=20"}},
+      // Nodes of 2^k slots that are full from the start.
+      {"full", {"retry capacity=4 speed=0.45 steps=20", nullptr, press}},
       // Several come to a cell from above in one step.
-      {"pour",
-       [](S s) {
-         s.arch.capacity = 8;
-         s.steps = 2;
-         s.place = pour_down;
-       }},
+      {"pour", {"capacity=8 steps=2", pour_down}},
       // As many lanes as pipes, a row that is not full, differences that are not rounded.
-      {"octaves",
-       [](S s) {
-         s.arch.table = {.shape = Shape::octaves, .degree = 1, .index_bits = 6};
-         s.arch.widths.difference_frac = 12;
-         s.arch.force_pipes = s.arch.filter_lanes = 3;
-         s.arch.capacity = 8;
-         s.place = close_together;
-       }},
+      {"octaves", {"octaves index_bits=6 difference_frac=12 pipes=3 lanes=3 capacity=8", close_together}},
       // One row, one beat per record.
       {"shared",
-       [](S s) {
-         s.features.damping = 0.2;
-         s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
-         s.arch.multipliers = Multipliers::shared;
-         s.arch.capacity = s.arch.filter_lanes = 8;
-         s.arch.queue_depth = 1;
-         s.arch.link_bits = 0;
-         s.place = close_together;
-       }},
-      {"flat_shared",
-       [](S s) {
-         s.features.flat = s.features.two_materials = true;
-         s.features.size = {2, 2, 1};
-         s.features.damping = 0.2;
-         s.arch.multipliers = Multipliers::shared;
-         s.arch.force_pipes = 2;
-         s.arch.table.degree = 2;
-       }},
-      {"flat_pd",
-       [](S s) {
-         s.features.flat = s.features.force_held = true;
-         s.features.size = {2, 2, 1};
-         s.arch.table = {.shape = Shape::octaves, .degree = 1, .index_bits = 6};
-         s.arch.filter_lanes = 3;
-         s.arch.widths.difference_frac = 11;
-       }},
-      {"pair", [](S s) { s.change = one_pair; }},
-      {"fails_w",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) { set_velocities(setup, 30000, true); };
-       }},
-      {"fails_w_z",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) { set_velocities(setup, 30000, true, 2); };
-       }},
-      {"fails_s",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) {
-           set_velocities(setup, 15000, true);
-           close_together(setup);
-         };
-       }},
-      {"fails_sum",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
-       }},
-      {"fails_sum_y",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) { set_velocities(setup, 2500, true, 1); };
-       }},
+       {"damping=0.2 octaves degree=2 index_bits=7 shared capacity=8 lanes=8 queue=1 link_bits=0",
+        close_together}},
+      {"flat_shared", {"flat two_materials size=2x2x1 damping=0.2 shared pipes=2 degree=2"}},
+      {"flat_pd", {"flat force_held size=2x2x1 octaves index_bits=6 lanes=3 difference_frac=11"}},
+      {"pair", {"", nullptr, one_pair}},
+      {"fails_w", {kFailing, fly_at<30000, true>}},
+      {"fails_w_z", {kFailing, fly_at<30000, true, 2>}},
+      {"fails_s", {kFailing, meet_close_together}},
+      {"fails_sum", {kFailing, fly_at<2500, true>}},
+      {"fails_sum_y", {kFailing, fly_at<2500, true, 1>}},
       // One pipe, no PD.
-      {"fails_free",
-       [](S s) {
-         s.features.damping = 8;
-         s.arch.widths.sum_bits = 11;
-         s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
-       }},
-      {"fails_u",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) {
-           set_velocities(setup, 30000, false);
-           for (Particle& p : setup.initial.particles)
-             if (setup.plan.rule.types[p.type].pd)
-               for (int a = 0; a < 3; ++a)
-                 p.u[a] = (p.id + static_cast<uint32_t>(a)) % 3 == 0 ? 5 : kMostU - 3 * a;
-         };
-       }},
-      {"fails_v",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) {
-           for (Particle& p : setup.initial.particles)
-             for (int a = 0; a < 3; ++a) p.v[a] = kMostV - (p.id * 7 + static_cast<uint32_t>(a) * 5) % 13;
-         };
-       }},
-      {"fails_low_v",
-       [](S s) {
-         failing(s);
-         s.place = [](Setup& setup) {
-           for (Particle& p : setup.initial.particles)
-             for (int a = 0; a < 3; ++a) p.v[a] = -kMostV + (p.id * 7 + static_cast<uint32_t>(a) * 5) % 13;
-         };
-       }},
+      {"fails_free", {"damping=8 sum_bits=11", fly_at<2500, true>}},
+      {"fails_u", {kFailing, far_from_rest}},
+      {"fails_v", {kFailing, near_most_v<1>}},
+      {"fails_low_v", {kFailing, near_most_v<-1>}},
       // Eight nodes, pairs at the cutoff, a coarse planar test.
-      {"edge",
-       [](S s) {
-         s.features.size = {2, 2, 2};
-         s.features.jitter = 0.2;
-         s.arch.widths.filter_frac = 4;
-         s.arch.capacity = 8;
-         s.arch.queue_depth = 3;
-         s.steps = 3;
-         s.place = at_the_cutoff;
-       }},
-      // Particles go everywhere, along several axes in a step; nodes fill up.
+      {"edge", {"size=2x2x2 jitter=0.2 filter_frac=4 capacity=8 queue=3 steps=3", at_the_cutoff}},
       // One multiplier for the axes, pairs as close as it lets them come, many of them beyond the cutoff; one
       // that fails.
-      {"shared_edge",
-       [](S s) {
-         recipes().at("edge")(s);
-         s.arch.multipliers = Multipliers::shared;
-       }},
-      {"fails_shared_w",
-       [](S s) {
-         recipes().at("fails_w")(s);
-         s.arch.multipliers = Multipliers::shared;
-       }},
-      {"fails_shared_s",
-       [](S s) {
-         recipes().at("fails_s")(s);
-         s.arch.multipliers = Multipliers::shared;
-       }},
+      {"shared_edge", {.words = "shared", .like = "edge"}},
+      {"fails_shared_w", {.words = "shared", .like = "fails_w"}},
+      {"fails_shared_s", {.words = "shared", .like = "fails_s"}},
+      // Particles go everywhere, along several axes in a step; nodes fill up.
       {"hot",
-       [](S s) {
-         s.features.size = {2, 2, 2};
-         s.features.jitter = 0.1;
-         s.features.speed = 0.5;
-         s.features.gravity = true;
-         s.arch.widths.guard = 8;
-         s.arch.widths.velocity_bits = s.arch.widths.sum_bits = 21;
-         s.steps = 12;
-         s.place = cross_the_corner;
-       }},
-      {"drift",
-       [](S s) {
-         s.features.flat = true;
-         s.features.size = {4, 4, 1};
-         s.arch.overlap = false;
-         s.arch.queue_depth = 1;
-         s.arch.filter_lanes = 3;
-         s.steps = 30;
-         s.change = drift;
-       }},
-      {"fly",
-       [](S s) {
-         s.arch.capacity = 2;
-         s.steps = 300;
-         s.change = fly;
-       }},
+       {"size=2x2x2 jitter=0.1 speed=0.5 gravity guard=8 velocity_bits=21 sum_bits=21 steps=12",
+        cross_the_corner}},
+      {"drift", {"flat size=4x4x1 no_overlap queue=1 lanes=3 steps=30", nullptr, drift}},
+      {"fly", {"capacity=2 steps=300", nullptr, fly}},
       // Pairs that wait for one another in two pipes of serial multipliers, behind a queue.
-      {"serial",
-       [](S s) {
-         s.features.damping = 0.2;
-         s.arch.table.degree = 2;
-         s.arch.multipliers = Multipliers::serial;
-         s.arch.force_pipes = 2;
-       }},
+      {"serial", {"damping=0.2 degree=2 serial pipes=2"}},
       {"flat_serial",
-       [](S s) {
-         s.features.flat = s.features.two_materials = true;
-         s.features.size = {2, 2, 1};
-         s.features.damping = 0.2;
-         s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
-         s.arch.multipliers = Multipliers::serial;
-         s.arch.force_pipes = 2;
-         s.arch.queue_depth = 1;
-       }},
-      {"narrow",
-       [](S s) {
-         s.features.force_held = true;
-         s.arch.multipliers = Multipliers::shared;
-         s.arch.table = {.shape = Shape::octaves, .degree = 2, .index_bits = 7};
-         narrow(s.arch);
-         s.place = close_together;
-       }},
+       {"flat two_materials size=2x2x1 damping=0.2 octaves degree=2 index_bits=7 serial pipes=2 queue=1"}},
+      {"narrow", {"force_held shared octaves degree=2 index_bits=7 narrow", close_together}},
       // One word per record.
-      {"narrow_serial",
-       [](S s) {
-         s.features.damping = 0.2;
-         s.features.two_materials = s.features.held = true;
-         s.arch.multipliers = Multipliers::serial;
-         s.arch.link_bits = 0;
-         narrow(s.arch);
-       }},
+      {"narrow_serial", {"damping=0.2 two_materials held serial link_bits=0 narrow"}},
       // A pair may follow another in the next cycle; nodes fill up, and some are empty.
-      {"narrow_hot",
-       [](S s) {
-         s.features.size = {2, 2, 2};
-         s.features.jitter = 0.1;
-         s.features.speed = 0.5;
-         s.features.gravity = true;
-         s.arch.widths.guard = 8;
-         s.arch.widths.velocity_bits = s.arch.widths.sum_bits = 21;
-         s.arch.link_bits = 9;
-         narrow(s.arch);
-         s.steps = 12;
-         s.place = cross_the_corner;
-       }},
-      {"narrow_flat",
-       [](S s) {
-         s.features.flat = true;
-         s.features.size = {4, 4, 1};
-         s.arch.multipliers = Multipliers::serial;
-         narrow(s.arch);
-         s.steps = 30;
-         s.change = drift;
-       }},
+      {"narrow_hot", {.words = "link_bits=9 narrow", .like = "hot"}},
+      {"narrow_flat", {"flat size=4x4x1 serial narrow steps=30", nullptr, drift}},
       // A candidate at the cutoff, a coarse planar test, words that are longer than a halo record.
       {"narrow_edge",
-       [](S s) {
-         s.features.size = {2, 2, 2};
-         s.features.jitter = 0.2;
-         s.arch.widths.filter_frac = 4;
-         s.arch.capacity = 8;
-         s.arch.link_bits = 50;
-         s.arch.multipliers = Multipliers::shared;
-         narrow(s.arch);
-         s.steps = 3;
-         s.place = at_the_cutoff;
-       }},
-      {"narrow_full",
-       [](S s) {
-         s.arch.link_check = LinkCheck::retry;
-         s.arch.capacity = 4;
-         narrow(s.arch);
-         s.features.speed = 0.45;
-         s.steps = 20;
-         s.change = [](Scene& scene) {
-           for (size_t k = 0; k < scene.body.size(); ++k)
-             scene.body.v[k] = Vec3(scene.body.x[k].x() < 1.3 ? 0.5 : 0, 0, 0);
-         };
-       }},
-      {"narrow_fails_sum",
-       [](S s) {
-         failing(s);
-         narrow(s.arch);
-         s.place = [](Setup& setup) { set_velocities(setup, 2500, true); };
-       }},
-      {"narrow_fails_u",
-       [](S s) {
-         recipes().at("fails_u")(s);
-         narrow(s.arch);
-       }},
-      {"narrow_fails_v",
-       [](S s) {
-         recipes().at("fails_v")(s);
-         narrow(s.arch);
-       }},
-      {"narrow_fails_w",
-       [](S s) {
-         recipes().at("fails_w")(s);
-         narrow(s.arch);
-       }},
+       {"size=2x2x2 jitter=0.2 filter_frac=4 capacity=8 link_bits=50 shared narrow steps=3", at_the_cutoff}},
+      {"narrow_full", {.words = "narrow", .like = "full"}},
+      {"narrow_fails_sum", {.words = "narrow", .like = "fails_sum"}},
+      {"narrow_fails_u", {.words = "narrow", .like = "fails_u"}},
+      {"narrow_fails_v", {.words = "narrow", .like = "fails_v"}},
+      {"narrow_fails_w", {.words = "narrow", .like = "fails_w"}},
       // Halos used on arrival: particles go everywhere, nodes fill up, some are empty.
-      {"arrival",
-       [](S s) {
-         recipes().at("hot")(s);
-         s.arch.halos = Halos::arrival;
-       }},
+      {"arrival", {.words = "arrival", .like = "hot"}},
       // Two streamers of one pipe each; records at the cutoff of a particle in the box, a coarse planar test.
-      {"arrival_two",
-       [](S s) {
-         recipes().at("edge")(s);
-         s.features.damping = 0.2;
-         s.features.two_materials = true;
-         s.arch.halos = Halos::arrival;
-         s.arch.streamers = s.arch.force_pipes = 2;
-       }},
+      {"arrival_two", {.words = "damping=0.2 two_materials arrival streamers=2 pipes=2", .like = "edge"}},
       // The same in two nodes: small enough for netlists.
-      {"arrival_damped",
-       [](S s) {
-         recipes().at("damped")(s);
-         s.arch.halos = Halos::arrival;
-         s.arch.streamers = 2;
-       }},
-      {"arrival_flat",
-       [](S s) {
-         recipes().at("drift")(s);
-         s.arch.overlap = true;
-         s.arch.halos = Halos::arrival;
-         s.arch.streamers = s.arch.force_pipes = 2;
-       }},
+      {"arrival_damped", {.words = "arrival streamers=2", .like = "damped"}},
+      {"arrival_flat", {.words = "overlap arrival streamers=2 pipes=2", .like = "drift"}},
       // One beat per record, one row, PD: an update of three cycles more.
-      {"arrival_pd",
-       [](S s) {
-         recipes().at("pd")(s);
-         s.arch.overlap = true;
-         s.arch.halos = Halos::arrival;
-         s.arch.capacity = s.arch.filter_lanes = 8;
-         s.arch.link_bits = 0;
-       }},
+      {"arrival_pd", {.words = "overlap arrival capacity=8 lanes=8 link_bits=0", .like = "pd"}},
       // Ends where a particle leaves.
-      {"arrival_retry",
-       [](S s) {
-         recipes().at("retry")(s);
-         s.arch.halos = Halos::arrival;
-       }},
+      {"arrival_retry", {.words = "arrival", .like = "retry"}},
       // Ends where one particle too many comes.
-      {"arrival_full",
-       [](S s) {
-         recipes().at("full")(s);
-         s.arch.halos = Halos::arrival;
-       }},
-      {"arrival_fly",
-       [](S s) {
-         recipes().at("fly")(s);
-         s.steps = 60;
-         s.arch.halos = Halos::arrival;
-       }},
-      {"arrival_fails_sum",
-       [](S s) {
-         recipes().at("fails_sum")(s);
-         s.arch.halos = Halos::arrival;
-         s.arch.streamers = 2;
-       }},
+      {"arrival_full", {.words = "arrival", .like = "full"}},
+      {"arrival_fly", {.words = "steps=60 arrival", .like = "fly"}},
+      {"arrival_fails_sum", {.words = "arrival streamers=2", .like = "fails_sum"}},
   };
   return all;
 }
@@ -560,22 +274,27 @@ const std::map<std::string, Recipe>& recipes() {
 
 std::vector<std::string> small_names() {
   std::vector<std::string> names;
-  for (const auto& [name, recipe] : recipes()) names.push_back(name);
+  for (const auto& [name, row] : rows()) names.push_back(name);
   for (const auto& [name, brick] : bricks()) names.push_back(name);
   return names;
 }
 
 Case small_case(const std::string& name) {
-  Small s;
-  s.arch = small_arch();
+  Recipe recipe = smallest();
   const auto brick = bricks().find(name);
-  recipes().at(brick == bricks().end() ? name : brick->second.first)(s);
-  if (brick != bricks().end()) s.arch.brick = brick->second.second;
-  Case c{"small_" + name, {}, s.steps};
-  c.scene = block_scene(s.features);
-  if (s.change) s.change(c.scene);
-  c.setup = make_setup(c.scene, s.arch);
-  if (s.place) s.place(c.setup);
+  Row row = rows().at(brick == bricks().end() ? name : brick->second.first);
+  if (row.like != nullptr) {
+    const Row& first = rows().at(row.like);
+    season(recipe, first.words);
+    row.place = first.place, row.change = first.change;
+  }
+  season(recipe, row.words);
+  if (brick != bricks().end()) recipe.arch.brick = brick->second.second;
+  Case c{"small_" + name, {}, recipe.steps};
+  c.scene = block_scene(recipe.features);
+  if (row.change != nullptr) row.change(c.scene);
+  c.setup = make_setup(c.scene, recipe.arch);
+  if (row.place != nullptr) row.place(c.setup);
   return c;
 }
 
