@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "model/trace/trace.h"
+#include "tests/support/folder.h"
 
 namespace cuboct::test {
 namespace {
@@ -24,22 +25,13 @@ struct Ended {
 class Programs : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "cuboct-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    dir_ = pattern;
     std::ofstream(dir_ / "bad.toml") << "stepz = 3\n"
                                      << std::ifstream(CUBOCT_SOURCE_DIR "/scenes/lj_block.toml").rdbuf();
   }
-  void TearDown() override { fs::remove_all(dir_); }
 
   Ended run(const std::string& command) const {
     const int status = std::system(fmt::format("cd '{}' && {} > out 2> err", dir_.string(), command).c_str());
-    const auto text_of = [&](const char* name) {
-      std::ostringstream text;
-      text << std::ifstream(dir_ / name).rdbuf();
-      return text.str();
-    };
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of("err"), text_of("out")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder_.read("err"), folder_.read("out")};
   }
   // A tool on the path that `script` describes; the path holds nothing else.
   void tool(const std::string& name, const std::string& script) const {
@@ -62,7 +54,8 @@ class Programs : public testing::Test {
     return names;
   }
 
-  fs::path dir_;
+  const test::Folder folder_;
+  const fs::path dir_ = folder_.path();
 };
 
 constexpr const char* kVerilator = "if [ \"$1\" = --version ]; then echo Verilator 5.006; exit 0; fi; ";

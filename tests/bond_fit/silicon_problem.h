@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 
 #include "study/potential_fit/bond_fit.h"
+#include "tests/support/folder.h"
 
 namespace cuboct::bond_fit::test {
 
@@ -23,13 +23,7 @@ inline const std::string kStability = "[stability]\nmass = \"28.0855 u\"\ncells 
 
 class SiliconFit : public testing::Test {
  protected:
-  SiliconFit() {
-    std::string name = (std::filesystem::temp_directory_path() / "cuboct_bond_fit_XXXXXX").string();
-    directory_ = mkdtemp(name.data());
-  }
-  ~SiliconFit() override { std::filesystem::remove_all(directory_); }
-
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_.path(name); }
   std::string directory(const std::string& name) const {
     std::filesystem::create_directory(path(name));
     return path(name);
@@ -44,7 +38,7 @@ class SiliconFit : public testing::Test {
   }
 
  private:
-  std::string directory_;
+  cuboct::test::Folder folder_;
 };
 
 }  // namespace cuboct::bond_fit::test

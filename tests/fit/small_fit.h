@@ -4,7 +4,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -12,18 +11,13 @@
 #include <string>
 
 #include "study/law_fit/fit.h"
+#include "tests/support/folder.h"
 
 namespace cuboct::fit::test {
 
 class SmallFit : public ::testing::Test {
  protected:
-  SmallFit() {
-    std::string name = (std::filesystem::temp_directory_path() / "cuboct_fit_XXXXXX").string();
-    directory_ = mkdtemp(name.data());
-  }
-  ~SmallFit() override { std::filesystem::remove_all(directory_); }
-
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_.path(name); }
   // `target`: of [target]; `search`: of [search].
   std::string study(const std::string& target, const std::string& search,
                     const std::string& name = "study.toml") const {
@@ -61,7 +55,7 @@ class SmallFit : public ::testing::Test {
   }
 
  private:
-  std::string directory_;
+  cuboct::test::Folder folder_;
 };
 
 }  // namespace cuboct::fit::test

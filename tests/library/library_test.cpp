@@ -12,6 +12,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/folder.h"
+
 namespace {
 
 using cuboct::Options;
@@ -26,15 +28,7 @@ Options with(const std::string& engine) {
   return options;
 }
 
-// A new directory, removed at its end.
-struct Folder {
-  Folder() {
-    std::string path = std::filesystem::temp_directory_path() / "cuboct_library_XXXXXX";
-    name = mkdtemp(path.data());
-  }
-  ~Folder() { std::filesystem::remove_all(name); }
-  std::string name;
-};
+using cuboct::test::Folder;
 
 TEST(Library, EnginesHoldTheSameBits) {
   Simulation lattice(kBlock, with("lattice")), golden(kBlock, with("golden"));
@@ -128,9 +122,9 @@ TEST(Library, AStateGoesOn) {
   const Folder folder;
   Simulation whole(kBlock, with("lattice")), first(kBlock, with("lattice"));
   first.step(4);
-  first.leave(folder.name + "/state");
+  first.leave(folder.path("state"));
   Options options = with("golden");
-  options.from = folder.name + "/state";
+  options.from = folder.path("state");
   Simulation second(kBlock, options);
   Simulation moved = std::move(second);
   moved.step(3);

@@ -16,6 +16,7 @@
 #include "model/base/error.h"
 #include "model/config/config.h"
 #include "model/run/element_run.h"
+#include "tests/support/folder.h"
 
 namespace cuboct {
 namespace {
@@ -37,24 +38,7 @@ const std::string kCompare =
     "[compare]\nrefine = [1, 2]\ncells = [1, 2]\nstrain_tolerance = [0, 1e-4]\n"
     "force = [\"1e-4 eV/angstrom\", \"1e-6 eV/angstrom\"]\n";
 
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              fmt::format("cuboct_multiscale_{}_{}", getpid(), count++)) {
-    std::filesystem::create_directory(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  static inline int count = 0;
-  std::filesystem::path path_;
-};
+using test::Folder;
 
 ElementStudy study_of(const std::string& text) {
   const Folder folder;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "tests/peer/lammps.h"
+#include "tests/support/folder.h"
 
 #include <fmt/format.h>
 #include <fmt/os.h>
 #include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -16,32 +16,6 @@ namespace cuboct::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A directory that goes when its owner does.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (fs::temp_directory_path() / "cuboct-lammps-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a scratch directory");
-    path_ = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(path_ / name).rdbuf();
-    return text.str();
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // Numbers travel as text with 17 significant digits, which keeps every bit of a double.
 std::string data_file(const LammpsRun& run, const Body& body) {
@@ -144,7 +118,7 @@ run {}
 // LAMMPS's bar angstrom^3 of an eV.
 constexpr double kLammpsPressure = 1.6021765e6;
 
-void run_in(const Scratch& scratch) {
+void run_in(const Folder& scratch) {
   const std::string command =
       fmt::format("cd '{}' && OMP_NUM_THREADS=1 '{}' -in in.lmp -log none > out.txt 2>&1",
                   scratch.path().string(), CUBOCT_LMP);
@@ -153,7 +127,7 @@ void run_in(const Scratch& scratch) {
 }
 
 // Runs LAMMPS in the scratch directory.
-std::vector<LammpsSample> samples_of(const LammpsRun& run, const Body& body, const Scratch& scratch,
+std::vector<LammpsSample> samples_of(const LammpsRun& run, const Body& body, const Folder& scratch,
                                      bool frames) {
   scratch.write("body.data", data_file(run, body));
   scratch.write("in.lmp", input_file(run, frames));
@@ -179,7 +153,7 @@ std::vector<LammpsSample> samples_of(const LammpsRun& run, const Body& body, con
 bool have_lammps() { return *CUBOCT_LMP != '\0'; }
 
 std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
-  const Scratch scratch;
+  const Folder scratch;
   const std::vector<LammpsSample> samples = samples_of(run, body, scratch, true);
   std::vector<LammpsFrame> frames;
   std::istringstream text(scratch.read("frames.txt"));
@@ -215,7 +189,7 @@ std::vector<LammpsFrame> run_lammps(const LammpsRun& run, const Body& body) {
 
 std::vector<std::string> ask_lammps(const LammpsRun& run, const Body& body, const std::string& lines,
                                     const std::vector<std::string>& files) {
-  const Scratch scratch;
+  const Folder scratch;
   scratch.write("body.data", data_file(run, body));
   scratch.write("in.lmp", begin_of_input(run) + lines);
   run_in(scratch);
@@ -225,7 +199,7 @@ std::vector<std::string> ask_lammps(const LammpsRun& run, const Body& body, cons
 }
 
 LammpsForces lammps_forces(const LammpsAtoms& atoms) {
-  const Scratch scratch;
+  const Folder scratch;
   scratch.write("atoms.data", data_file(atoms));
   const auto boundary = [&](int axis) { return atoms.box.periodic[axis] ? 'p' : 'f'; };
   scratch.write("in.lmp", fmt::format(kForces, boundary(0), boundary(1), boundary(2), atoms.pair, atoms.dt,
@@ -263,7 +237,7 @@ LammpsForces lammps_forces(const LammpsAtoms& atoms) {
 }
 
 std::vector<LammpsSample> sample_lammps(const LammpsRun& run, const Body& body) {
-  const Scratch scratch;
+  const Folder scratch;
   std::vector<LammpsSample> samples = samples_of(run, body, scratch, false);
   const int expected = run.steps / run.every + 1;
   if (static_cast<int>(samples.size()) < expected)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The project of a rule of text: its files, and vectors that hold golden's fields.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "model/base/output.h"
 #include "model/contract/golden.h"
 #include "tests/backend/rule_cases.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct::test {
@@ -41,9 +41,9 @@ class HexWord {
 
 class RuleEmit : public testing::Test {
  protected:
-  ~RuleEmit() override { fs::remove_all(root_); }
   std::string text(const std::string& path) const { return read_text((root_ / path).string()); }
-  const fs::path root_ = fs::temp_directory_path() / ("cuboct-rule-emit-" + std::to_string(getpid()));
+  const test::Folder folder_;
+  const fs::path root_ = folder_.path("project");
 };
 
 // Fields of vectors and of signed numbers; each word of the bench is looked at, each field of it.

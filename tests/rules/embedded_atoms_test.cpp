@@ -12,6 +12,7 @@
 #include "model/program/potential_file.h"
 #include "model/run/rounds_run.h"
 #include "tests/rules/metal.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -48,18 +49,8 @@ TEST(CubicTable, HasLammpsSlopes) {
   EXPECT_DOUBLE_EQ(CubicTable("powers", 1, {0, 1, 16, 81, 256, 625, 1296}, true).slope(3), 108);
 }
 
-std::string file_with(const std::string& text) {
-  const auto path = std::filesystem::temp_directory_path() / fmt::format("cuboct_eam_{}", getpid());
-  std::ofstream(path) << text;
-  return path.string();
-}
 EmbeddedAtoms read_text(const std::string& text, const std::vector<std::string>& elements = {}) {
-  const std::string path = file_with(text);
-  struct Removed {
-    std::string path;
-    ~Removed() { std::filesystem::remove(path); }
-  } removed{path};
-  return read_embedded_atoms(path, elements, false);
+  return read_embedded_atoms(test::Folder().write("cuboct_eam_", text), elements, false);
 }
 
 const std::string kSetfl =
@@ -290,12 +281,11 @@ TEST(EmbeddedAtoms, TheHashBindsTheFile) {
   };
   std::ifstream in(kCopper);
   std::string text((std::istreambuf_iterator<char>(in)), {});
-  const std::string same = file_with(text);
-  const std::string hash = text_hash(kOwnFile);
+  const test::Folder folder;
+  const std::string same = folder.write("copper", text), hash = text_hash(kOwnFile);
   EXPECT_EQ(text_hash(fmt::format("file = \"{}\"", same)), hash);
   text[text.rfind("e+00") - 1] ^= 1;  // a digit
-  EXPECT_NE(text_hash(fmt::format("file = \"{}\"", file_with(text))), hash);
-  std::filesystem::remove(same);
+  EXPECT_NE(text_hash(fmt::format("file = \"{}\"", folder.write("copper", text))), hash);
 }
 
 TEST(EmbeddedAtoms, WhatIsWrongIsSaidAtItsPlace) {

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "model/run/rounds_run.h"
 #include "model/scene/scene.h"
+#include "tests/support/folder.h"
 
 namespace cuboct {
 namespace {
@@ -30,13 +30,10 @@ std::string rule_on_the_page(const std::string& name) {
 
 // A scene of these lines under that rule; `start`: of its field.
 Scene scene_of(const std::string& rule, const std::string& lines, const std::string& start = "") {
-  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cuboct_limits_{}", getpid());
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "rule.toml") << rule_on_the_page(rule);
-  const Scene scene = parse_scene(fmt::format("{}[rule]\nfile = \"rule.toml\"\n{}", lines, start),
-                                  (folder / "scene.toml").string());
-  std::filesystem::remove_all(folder);
-  return scene;
+  const test::Folder folder;
+  folder.write("rule.toml", rule_on_the_page(rule));
+  return parse_scene(fmt::format("{}[rule]\nfile = \"rule.toml\"\n{}", lines, start),
+                     folder.path("scene.toml"));
 }
 
 std::vector<Vec3> forces_of(const Scene& scene) {

@@ -7,12 +7,12 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 
 #include "tests/rules/lps_body.h"
+#include "tests/support/folder.h"
 
 namespace cuboct {
 namespace {
@@ -40,15 +40,14 @@ std::string input_of(const Body& body, const std::vector<Vec3>& x) {
 
 // N/m^3, by particle.
 std::vector<Vec3> lammps_forces(const std::string& input, size_t particles) {
-  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cuboct_lps_{}", getpid());
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "in.lmp") << input;
+  const test::Folder folder;
+  folder.write("in.lmp", input);
   const std::string command =
-      fmt::format("cd '{}' && '{}' -in in.lmp -log none > out.txt 2>&1", folder.string(), CUBOCT_LMP);
+      fmt::format("cd '{}' && '{}' -in in.lmp -log none > out.txt 2>&1", folder.path().string(), CUBOCT_LMP);
   std::vector<Vec3> force(particles, Vec3::Zero());
   size_t read = 0;
   if (std::system(command.c_str()) == 0) {
-    std::ifstream dump(folder / "out.dump");
+    std::ifstream dump(folder.path("out.dump"));
     for (std::string line; std::getline(dump, line);) {
       std::istringstream words(line);
       size_t id = 0;
@@ -56,7 +55,6 @@ std::vector<Vec3> lammps_forces(const std::string& input, size_t particles) {
       if (words >> id >> f[0] >> f[1] >> f[2] && id >= 1 && id <= particles) force[id - 1] = f, ++read;
     }
   }
-  std::filesystem::remove_all(folder);
   EXPECT_EQ(read, particles) << "LAMMPS gave no forces";
   return force;
 }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What a rule shows of its particles, and its way into a frame, a journal included.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "model/run/journal.h"
 #include "model/run/rounds_run.h"
 #include "model/trace/trace.h"
 #include "tests/rules/lps_body.h"
+#include "tests/support/folder.h"
 
 namespace cuboct {
 namespace {
@@ -92,8 +91,8 @@ TEST(Shown, FramesHaveWhatTheRuleShowsOfTheirState) {
 
 // A resumed run writes the frames of before from its journal.
 TEST(Shown, AJournalKeepsIt) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() / ("cuboct_shown_" + std::to_string(getpid()))).string();
+  const test::Folder folder;
+  const std::string path = folder.path("journal");
   const std::vector<Vec3> x{Vec3(1, 2, 3), Vec3(4, 5, 6)};
   const RealFrame frames[] = {{0, x, x, {}, {}, {{7, 8}, {1, 2, 3, 4, 5, 6}}}, {9, x, x, {}, {}}};
   std::vector<RealFrame> read;
@@ -107,7 +106,6 @@ TEST(Shown, AJournalKeepsIt) {
   Journal(path, 5, false, end, trace).for_each_frame([&](const RunState& state) {
     read.push_back(std::get<RealFrame>(state));
   });
-  std::filesystem::remove(path);
   ASSERT_EQ(read.size(), 2u);
   for (size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(read[k].step, frames[k].step);

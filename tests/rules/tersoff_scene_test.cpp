@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "model/analysis/motion.h"
@@ -13,6 +12,7 @@
 #include "model/run/rounds_run.h"
 #include "model/run/static_engine.h"
 #include "model/scene/scene.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -226,12 +226,12 @@ std::string carbon_refusal(const std::string& text) {
 
 // The set of 1988 in kcal/mol: the energy of silicon is that of the set in eV, -4.630 eV an atom.
 TEST(TersoffScene, AFileInRealUnitsIsTheSetInMetalUnits) {
+  const test::Folder folder;
   const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("cuboct_real_{}.tersoff", getpid())).string();
-  std::ofstream(path)
-      << "# DATE: 2007-10-25 UNITS: real\n"
-         "Si Si Si 3.0 1.0 1.3258 4.8381 2.0417 0.0 22.956 0.33675 1.3258 2199.35 3.0 0.2 3.2394 "
-         "75286.4\n";
+      folder.write("real.tersoff",
+                   "# DATE: 2007-10-25 UNITS: real\n"
+                   "Si Si Si 3.0 1.0 1.3258 4.8381 2.0417 0.0 22.956 0.33675 1.3258 2199.35 3.0 0.2 3.2394 "
+                   "75286.4\n");
   const auto energy = [](const std::string& rule) {
     const Scene scene = parse_scene(carbon("crystal = { lattice = \"diamond\", bond = \"2.35 angstrom\" "
                                            "}\nbox = { cells = [2, 2, 2], periodic = "
@@ -242,7 +242,6 @@ TEST(TersoffScene, AFileInRealUnitsIsTheSetInMetalUnits) {
     return potential_of(run) / static_cast<double>(scene.body.size()) / kEv;
   };
   const double real = energy("file = \"" + path + "\"\nelement = \"Si\"");
-  std::filesystem::remove(path);
   EXPECT_NEAR(real, -4.630, 5e-4);
   EXPECT_NEAR(real, energy("potential = \"si_1988\""), 1e-4);  // both files round A and B
 }
@@ -253,10 +252,10 @@ TEST(TersoffScene, WhatCannotBeIsRefusedAtItsKey) {
     EXPECT_TRUE(said.starts_with(place)) << said;
     EXPECT_NE(said.find(what), std::string::npos) << said;
   };
-  const std::string path =
-      (std::filesystem::temp_directory_path() / fmt::format("cuboct_{}.tersoff", getpid())).string();
-  std::ofstream(path)
-      << "C C C 3 1 0 38049 4.3484 -0.57058 0.72751 1.5724e-7 2.2119 346.7 1.95 0.15 3.4879 1393.6\n";
+  const test::Folder folder;
+  const std::string path = folder.write(
+      "c.tersoff",
+      "C C C 3 1 0 38049 4.3484 -0.57058 0.72751 1.5724e-7 2.2119 346.7 1.95 0.15 3.4879 1393.6\n");
   const auto of_file = [&](const std::string& rule) {
     return carbon(kSheet, "", "file = \"" + path + "\"\n" + rule);
   };
@@ -268,7 +267,6 @@ TEST(TersoffScene, WhatCannotBeIsRefusedAtItsKey) {
   std::ofstream(path)
       << "C C C 3 1 0 38049 -4.3484 -0.57058 0.72751 1.5724e-7 2.2119 346.7 1.95 0.15 3.4879 1393.6\n";
   has(of_file("element = \"C\""), path + ":1:1", "d is -4.3484");
-  std::filesystem::remove(path);
   has(carbon(kSheet, "", "potential = \"c_1998\""), "s.toml:6:13", "did you mean 'c_1989'");
   has(carbon(kSheet, "", "potential = \"c_1989\"\ndamage_width = 1"), "s.toml:7:1",
       "unknown key 'damage_width'");

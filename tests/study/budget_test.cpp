@@ -15,6 +15,7 @@
 #include "model/base/error.h"
 #include "model/base/output.h"
 #include "study/sweep/cost.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct::study {
@@ -86,14 +87,9 @@ index_bits = [3, 6, 9]
 class Budget : public testing::Test {
  protected:
   void SetUp() override {
-    dir_ = fs::temp_directory_path() /
-           ("cuboct_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(dir_);
-    fs::create_directories(dir_);
     std::ofstream(dir_ / "scene.toml") << kScene;
     std::ofstream(dir_ / "arch.toml") << kArch;
   }
-  void TearDown() override { fs::remove_all(dir_); }
 
   Study study(const std::string& text = kStudy) const {
     std::ofstream(dir_ / "study.toml") << text;
@@ -104,7 +100,8 @@ class Budget : public testing::Test {
   }
   BudgetQuestion question(double budget) const { return {1, budget, 2, false}; }
 
-  fs::path dir_;
+  const test::Folder folder_;
+  const fs::path dir_ = folder_.path();
 };
 
 // The truth of kStudy, made once: it does not depend on where the files lie, nor on [search].

@@ -2,11 +2,11 @@
 // Studies of a ringing block that take a fraction of a second.
 #pragma once
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "tests/support/folder.h"
 
 namespace cuboct::test {
 
@@ -14,8 +14,6 @@ namespace cuboct::test {
 class SmallStudy {
  public:
   SmallStudy() {
-    std::string name = (std::filesystem::temp_directory_path() / "cuboct_study_XXXXXX").string();
-    directory_ = mkdtemp(name.data());
     std::ofstream(path("block.toml")) << R"(density = "1.41 g/cm^3"
 [packing]
 pitch = "0.5 mm"
@@ -71,11 +69,10 @@ dt = "auto"
 steps = 160
 )";
   }
-  ~SmallStudy() { std::filesystem::remove_all(directory_); }
   SmallStudy(const SmallStudy&) = delete;
   SmallStudy& operator=(const SmallStudy&) = delete;
 
-  std::string path(const std::string& name) const { return directory_ + "/" + name; }
+  std::string path(const std::string& name) const { return folder_.path(name); }
   // A study of the block, or of another scene; `text` follows the top-level keys.
   std::string study(const std::string& text, const std::string& name = "study.toml",
                     const std::string& scene = "block.toml") const {
@@ -84,7 +81,7 @@ steps = 160
   }
 
  private:
-  std::string directory_;
+  Folder folder_;
 };
 
 }  // namespace cuboct::test

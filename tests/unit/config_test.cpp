@@ -11,6 +11,7 @@
 #include "model/base/error.h"
 #include "model/base/input_file.h"
 #include "model/config/config.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -172,15 +173,10 @@ TEST(Config, PassesSyntaxErrorsOn) {
 }
 
 TEST(Config, ProposesTheNearestFile) {
-  const std::filesystem::path directory =
-      std::filesystem::temp_directory_path() / fmt::format("cuboct_beside.{}", getpid());
-  std::filesystem::create_directory(directory);
-  std::ofstream(directory / "beam.toml") << "a = 1\n";
-  const std::string path = (directory / "baem.toml").string();
-  EXPECT_EQ(
-      refused_with([&] { read_config(path); }),
-      path + ": cannot read this file\n  hint: did you mean '" + (directory / "beam.toml").string() + "'?");
-  std::filesystem::remove_all(directory);
+  const test::Folder folder;
+  const std::string there = folder.write("beam.toml", "a = 1\n"), path = folder.path("baem.toml");
+  EXPECT_EQ(refused_with([&] { read_config(path); }),
+            path + ": cannot read this file\n  hint: did you mean '" + there + "'?");
 }
 
 // What no scene is: a device without end, a directory, a pipe that no one writes into, more than is read.

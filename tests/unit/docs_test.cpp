@@ -19,6 +19,7 @@
 #include "model/base/unit_names.h"
 #include "model/config/config.h"
 #include "model/scene/scene.h"
+#include "tests/support/folder.h"
 #ifdef CUBOCT_HAS_STUDIES
 #include "study/machines/machine_study.h"
 #include "study/sweep/study.h"
@@ -93,8 +94,8 @@ std::set<std::string> documented(const std::string& page) {
 
 // All keys that readers ask for, over scenes that between them take every branch.
 std::set<std::string> scene_keys() {
-  const auto path =
-      std::filesystem::temp_directory_path() / fmt::format("cuboct_docs_test_{}.toml", getpid());
+  const test::Folder folder;
+  const std::filesystem::path path = folder.path("scene.toml");
   std::set<std::string> keys;
   record_config_keys(&keys);
   for (const char* name :
@@ -186,7 +187,6 @@ std::set<std::string> scene_keys() {
       << run;
   read_scene(path.string());
   std::filesystem::remove(file);
-  std::filesystem::remove(path);
   record_config_keys(nullptr);
   return keys;
 }
@@ -229,7 +229,8 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
 TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   const std::string page = read_text(kRoot + "/docs/user/study.md");
   std::set<std::string> of_scene = scene_keys();
-  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_study_test.toml";
+  const test::Folder folder;
+  const std::filesystem::path path = folder.path("study.toml");
   std::ofstream(path) << "scene = \"" << kRoot << "/scenes/coupon.toml\"\narch = \"" << kRoot
                       << "/scenes/archs/default.toml\"\n"
                       << "[change.run]\nduration = \"1 us\"\n[truth]\n[speed]\n"
@@ -242,7 +243,6 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
   record_config_keys(&keys);
   study::read_study(path.string());
   record_config_keys(nullptr);
-  std::filesystem::remove(path);
   std::set<std::string> asked;
   for (const std::string& key : keys)
     if (!of_scene.contains(key) && !key.starts_with("change."))
@@ -260,8 +260,8 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
 // Keys that studies of machines have beside those of other studies.
 TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
   const std::string page = read_text(kRoot + "/docs/user/machines.md");
-  const auto path =
-      std::filesystem::temp_directory_path() / fmt::format("cuboct_docs_machines_{}.toml", getpid());
+  const test::Folder folder;
+  const std::filesystem::path path = folder.path("machines.toml");
   std::ofstream(path) << "scene = \"" << kRoot << "/scenes/undamped_block.toml\"\n"
                       << "[[machines]]\npresets = [ { name = \"a\" } ]\n[evolve]\n";
   std::set<std::string> keys, asked{"steps", "constraints", "minimise"};
@@ -271,7 +271,6 @@ TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
                              [](Technology technology, const std::string&) { return technology; },
                              {}});
   record_config_keys(nullptr);
-  std::filesystem::remove(path);
   for (const std::string& key : keys)
     if (key.starts_with("machines.") || key.starts_with("evolve.")) asked.insert(key);
   EXPECT_GT(asked.size(), 40U);
@@ -292,7 +291,8 @@ TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
 TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
   const std::string page = read_text(kRoot + "/docs/user/fit.md");
   std::set<std::string> keys, asked;
-  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_fit_test.toml";
+  const test::Folder folder;
+  const std::filesystem::path path = folder.path("fit.toml");
   const std::string scene = kRoot + "/scenes/studies/fit_bar_scene.toml",
                     arch = kRoot + "/scenes/archs/default.toml";
   for (const std::string& target : {"file = \"" + kRoot + "/scenes/studies/acetal.csv\"",
@@ -313,7 +313,6 @@ TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
       if (!of_scene.contains(key) && !key.starts_with("change.") && !key.starts_with("law."))
         asked.insert(key);
   }
-  std::filesystem::remove(path);
   EXPECT_GT(asked.size(), 30U);
   expect_documented(page, asked);
   const auto named = documented(page);
@@ -325,7 +324,8 @@ TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
 
 // "8 to 30" in the row of a key: both ends are read, one beyond each is not.
 TEST(Docs, ArchRangesAreThoseOfTheReader) {
-  const auto path = std::filesystem::temp_directory_path() / "cuboct_docs_ranges_test.toml";
+  const test::Folder folder;
+  const std::filesystem::path path = folder.path("arch.toml");
   const auto accepts = [&](const std::string& section, const std::string& key, int value) {
     std::ofstream file(path);
     file << "name = \"t\"\n[" << section << "]\n";
@@ -358,7 +358,6 @@ TEST(Docs, ArchRangesAreThoseOfTheReader) {
     }
   }
   EXPECT_EQ(rows, 22);
-  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "model/base/output.h"
 #include "model/trace/vtk_frames.h"
 #include "tests/support/file_limit.h"
+#include "tests/support/folder.h"
 
 namespace cuboct {
 namespace {
@@ -87,8 +88,6 @@ void write_vtk(const fs::path& stem, const std::vector<Frame>& frames, const Fra
 class Frames : public testing::Test {
  protected:
   void SetUp() override {
-    directory_ = fs::temp_directory_path() / ("cuboct_frames_" + std::to_string(getpid()));
-    fs::create_directory(directory_);
     for (int k = 0; k < 2; ++k) {
       Frame frame;
       frame.step = 10u * k;
@@ -107,9 +106,9 @@ class Frames : public testing::Test {
     style_.own = {{"damage", "1"}, {"flux", "J/m^2", kVectorNames}};
     style_.periodic = {Vec3(-1, 0, 0), Vec3(4, 0, 0)};
   }
-  void TearDown() override { fs::remove_all(directory_); }
 
-  fs::path directory_;
+  const test::Folder folder_;
+  const fs::path directory_ = folder_.path();
   std::vector<Frame> frames_;
   FrameStyle style_;
 };

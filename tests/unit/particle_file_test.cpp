@@ -12,6 +12,7 @@
 
 #include "model/body/particle_file.h"
 #include "model/scene/scene.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -40,12 +41,8 @@ const std::string kSi =
 
 class ParticleFiles : public testing::Test {
  protected:
-  ParticleFiles() { std::filesystem::create_directories(folder_); }
-  ~ParticleFiles() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return (folder_ / name).string();
+    return made_.write(name, text);
   }
   // `keys` of [particles].
   Scene scene(const std::string& keys, const std::string& rest = kReduced) const {
@@ -72,8 +69,8 @@ class ParticleFiles : public testing::Test {
     return refused("file = \"a.data\"\n");
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / fmt::format("cuboct_particle_file_{}", getpid());
+  const test::Folder made_;
+  const std::filesystem::path folder_ = made_.path();
 };
 
 TEST_F(ParticleFiles, OfExtendedXyzAreThoseThatAreListed) {

@@ -2,7 +2,6 @@
 #include "model/trace/raster.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "model/base/error.h"
 #include "model/body/geometry.h"
 #include "model/body/packing.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -109,8 +109,8 @@ TEST(Raster, OneThatFliesOffIsLeftOut) {
 }
 
 TEST(Raster, AFileHoldsElevenBits) {
-  const fs::path directory = fs::temp_directory_path() / ("cuboct_rasters_" + std::to_string(getpid()));
-  fs::create_directory(directory);
+  const test::Folder folder;
+  const fs::path& directory = folder.path();
   std::vector<Vec3> x;
   for (int k = 0; k < 50; ++k) x.emplace_back(0.37 * k, std::sin(k), 0);
   Frame frame = frame_of(x);
@@ -155,7 +155,6 @@ TEST(Raster, AFileHoldsElevenBits) {
   EXPECT_TRUE(rounded);
   EXPECT_EQ(refused_with([&] { read_rasters(CUBOCT_SOURCE_DIR "/LICENSE"); }),
             CUBOCT_SOURCE_DIR "/LICENSE is not an HDF5 file");
-  fs::remove_all(directory);
 }
 
 }  // namespace

@@ -4,13 +4,13 @@
 #include "hw/rtl/rtl_template.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "model/base/output.h"
 #include "tests/support/block.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct {
@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 // A second emission clears what the first one left, and nothing outside its directory, whatever the list
 // says.
 TEST(RtlEmit, ClearsItsOwnFilesAlone) {
-  const fs::path root = fs::temp_directory_path() / ("cuboct-emit-" + std::to_string(getpid()));
+  const test::Folder folder;
+  const fs::path& root = folder.path();
   const std::string project = (root / "project").string();
   const auto setup = test::block({.size = {1, 1, 1}});
   emit_node(setup.plan, project);
@@ -33,7 +34,6 @@ TEST(RtlEmit, ClearsItsOwnFilesAlone) {
   emit_node(setup.plan, project);
   EXPECT_FALSE(fs::exists(stale));
   EXPECT_TRUE(fs::exists(precious));
-  fs::remove_all(root);
 }
 
 // One who reads a library's file reads what every project holds, whatever the project is made for.
@@ -41,8 +41,8 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
   Arch bricks;
   bricks.brick = {2, 1, 1};
   const Scene held = test::block_scene({.size = {2, 1, 1}, .held = true});
-  const fs::path library = fs::path(CUBOCT_SOURCE_DIR) / "rtl",
-                 root = fs::temp_directory_path() / ("cuboct-emit-copies-" + std::to_string(getpid()));
+  const test::Folder folder;
+  const fs::path library = fs::path(CUBOCT_SOURCE_DIR) / "rtl", root = folder.path("project");
   for (const Arch& arch : {Arch{}, bricks})
     for (const BoardChoice& board :
          {BoardChoice{}, BoardChoice{.name = "ulx3s"}, BoardChoice{.name = "icebreaker", .velocities = false},
@@ -76,7 +76,8 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
 TEST(RtlEmit, PrefixesEveryName) {
   const Scene held = test::block_scene({.size = {2, 1, 1}, .held = true});
   const auto setup = make_setup(held, Arch{});
-  const fs::path root = fs::temp_directory_path() / ("cuboct-emit-prefix-" + std::to_string(getpid()));
+  const test::Folder folder;
+  const fs::path& root = folder.path();
   for (const BoardChoice& board :
        {BoardChoice{.name = "ulx3s"}, BoardChoice{.name = "", .bus = "axi4lite"}}) {
     emit_rtl(setup.plan, setup.initial, root / "plain", {.board = board, .arch = "name = \"cuboct_x\"\n"});

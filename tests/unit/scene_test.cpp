@@ -19,6 +19,8 @@
 #include "model/scene/scene.h"
 #include "model/scene/scene_parts.h"
 #include "model/solid/dynamical_matrix.h"
+#include "tests/support/folder.h"
+#include "tests/support/refused_with.h"
 
 namespace cuboct {
 namespace {
@@ -43,27 +45,11 @@ steps = 10
 
 class SceneTest : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() / (std::string("cuboct_scene_") + info->name() + ".toml");
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-
-  Scene read(const std::string& text) {
-    std::ofstream(path_) << text;
-    return read_scene(path_.string());
-  }
-  // The error's text, with the file's name cut down to "a.toml".
-  std::string error(const std::string& text) {
-    try {
-      read(text);
-    } catch (const InputError& e) {
-      std::string what = e.what();
-      const size_t at = what.find(path_.string());
-      if (at == 0) what.replace(0, path_.string().size(), "a.toml");
-      return what;
-    }
-    return "accepted";
+  Scene read(const std::string& text) const { return read_scene(folder_.write("a.toml", text)); }
+  // The error's text, without the folder.
+  std::string error(const std::string& text) const {
+    const std::string what = refused_with([&] { read(text); }), folder = folder_.path("");
+    return what.starts_with(folder) ? what.substr(folder.size()) : what;
   }
   // The base with one thing changed.
   static std::string with(const std::string& from, const std::string& to) {
@@ -74,7 +60,7 @@ class SceneTest : public testing::Test {
   }
 
  private:
-  std::filesystem::path path_;
+  const test::Folder folder_;
 };
 
 TEST_F(SceneTest, BaseIsRead) {

@@ -17,6 +17,7 @@
 #include "model/trace/hdf5_file.h"
 #include "model/trace/trace_file.h"
 #include "tests/support/file_limit.h"
+#include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 #include "tests/unit/made_trace.h"
 
@@ -27,15 +28,10 @@ namespace fs = std::filesystem;
 
 class TraceFile : public testing::Test {
  protected:
-  void SetUp() override {
-    directory_ = fs::temp_directory_path() / ("cuboct_trace_" + std::to_string(getpid()) + "_" +
-                                              testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directory(directory_);
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.path(name); }
 
-  fs::path directory_;
+  const test::Folder folder_;
+  const fs::path directory_ = folder_.path();
 };
 
 void expect_equal(const Trace& a, const Trace& b) {
