@@ -217,7 +217,7 @@ void for_each_site(const Fcc& fcc, const Bounds& bounds, const On& on) {
   for (int64_t l = first[2]; l <= last[2]; ++l)
     for (int64_t k = first[1]; k <= last[1]; ++k) {
       const Vec3 start =
-          fcc.offset + half * (fcc.orientation * Vec3(0, static_cast<double>(k), static_cast<double>(l)));
+          fcc.offset + half * fcc.orientation * Vec3(0, static_cast<double>(k), static_cast<double>(l));
       const auto [from, to] = inside_bounds(start, half * fcc.orientation.col(0), bounds, half);
       const int64_t begin = from > static_cast<double>(first[0]) ? std::llround(std::ceil(from)) : first[0];
       const int64_t end = to < static_cast<double>(last[0]) ? std::llround(std::floor(to)) : last[0];

@@ -115,7 +115,7 @@ std::vector<Vec3> pack(const Fcc& fcc, const Shape* shape, const Periodic& box) 
     std::vector<Vec3> sites;
     for (int64_t k = first[1]; k <= last[1]; ++k) {
       const Vec3 start =
-          fcc.offset + half * (fcc.orientation * Vec3(0, static_cast<double>(k), static_cast<double>(l)));
+          fcc.offset + half * fcc.orientation * Vec3(0, static_cast<double>(k), static_cast<double>(l));
       const auto [from, to] = inside_bounds(start, half * fcc.orientation.col(0), bounds, half);
       const int64_t begin = from > static_cast<double>(first[0]) ? std::llround(std::ceil(from)) : first[0];
       const int64_t end = to < static_cast<double>(last[0]) ? std::llround(std::floor(to)) : last[0];

@@ -34,7 +34,7 @@ std::vector<Bond> half_bonds(const PairLaw& law, double pitch) {
     const double r = d.norm();
     const double axial = -law.slope(r), lateral = -law.force(r) / r;
     const Vec3 e = d / r;
-    bonds.push_back({d, lateral * Mat3::Identity() + (axial - lateral) * (e * e.transpose())});
+    bonds.push_back({d, lateral * Mat3::Identity() + (axial - lateral) * e * e.transpose()});
   }
   return bonds;
 }

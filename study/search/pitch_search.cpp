@@ -125,7 +125,7 @@ class Packings {
   double first() const { return pitch_; }
   int shifts() const { return free_.isZero() ? 1 : kShifts; }
   Settings at(double pitch, int shift) const {
-    const Vec3 by = std::numbers::sqrt2 * pitch * (orientation_ * shift_of(shift));
+    const Vec3 by = std::numbers::sqrt2 * pitch * orientation_ * shift_of(shift);
     const Vec3 offset = offset_ + by.cwiseProduct(free_);
     Settings settings;
     if (pitch != pitch_) settings.scene.push_back({"packing.pitch", quantity(written(pitch))});
