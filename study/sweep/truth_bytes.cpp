@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "study/sweep/truth_bytes.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "model/base/error.h"
@@ -22,7 +23,7 @@ struct In {
     at += size;
   }
   void expect(uint64_t count, size_t size) {
-    if (count > (bytes.size() - at) / size) throw InputError("a truth in the results is cut short");
+    if (count > (bytes.size() - at) / std::max<size_t>(size, 1)) throw InputError("a truth in the results is cut short");
   }
   const std::string& bytes;
   size_t at = 0;
