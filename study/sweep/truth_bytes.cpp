@@ -23,7 +23,8 @@ struct In {
     at += size;
   }
   void expect(uint64_t count, size_t size) {
-    if (count > (bytes.size() - at) / std::max<size_t>(size, 1)) throw InputError("a truth in the results is cut short");
+    if (count > (bytes.size() - at) / std::max<size_t>(size, 1))
+      throw InputError("a truth in the results is cut short");
   }
   const std::string& bytes;
   size_t at = 0;
