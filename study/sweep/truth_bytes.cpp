@@ -2,7 +2,6 @@
 #include "study/sweep/truth_bytes.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "model/base/error.h"
 #include "model/trace/hand_over.h"
@@ -18,13 +17,12 @@ struct Out {
 
 struct In {
   void move(void* to, size_t size) {
-    expect(1, size);
-    std::memcpy(to, bytes.data() + at, size);
+    expect(size, 1);
+    std::copy_n(bytes.data() + at, size, static_cast<char*>(to));
     at += size;
   }
   void expect(uint64_t count, size_t size) {
-    if (count > (bytes.size() - at) / std::max<size_t>(size, 1))
-      throw InputError("a truth in the results is cut short");
+    if (count > (bytes.size() - at) / size) throw InputError("a truth in the results is cut short");
   }
   const std::string& bytes;
   size_t at = 0;

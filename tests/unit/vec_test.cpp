@@ -70,6 +70,9 @@ TEST(Vec3, HasTheBitsOfEigens) {
     ASSERT_EQ(vectors_of(m, Vec3(a), Vec3(b)), vectors_of(m, a, b)) << trial;
     ASSERT_EQ(numbers_of(m, Vec3(a), Vec3(b)), numbers_of(m, a, b)) << trial;
     ASSERT_EQ(Mat3(Vec3(a) * Vec3(b).transpose()), Mat3(a * b.transpose())) << trial;
+    // Eigen scales the left factor first, whatever the brackets say.
+    ASSERT_EQ(bits(0.3 * m * Vec3(a)), bits(Column(0.3 * (m * a)))) << trial;
+    ASSERT_EQ(Mat3(0.3 * Vec3(a) * Vec3(b).transpose()), Mat3(0.3 * (a * b.transpose()))) << trial;
   }
 }
 
