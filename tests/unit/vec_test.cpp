@@ -3,6 +3,7 @@
 // with matrices round alike.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <random>
