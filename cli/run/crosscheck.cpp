@@ -26,6 +26,7 @@
 #include "model/base/process.h"
 #include "model/base/spelling.h"
 #include "model/base/text.h"
+#include "model/run/start.h"
 #include "model/trace/compare.h"
 #include "model/trace/trace_file.h"
 

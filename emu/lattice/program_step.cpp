@@ -7,6 +7,7 @@
 #include "model/base/error.h"
 #include "model/base/hash.h"
 #include "model/base/resources.h"
+#include "model/program/integer_program.h"
 
 namespace cuboct::emu {
 

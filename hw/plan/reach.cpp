@@ -188,7 +188,7 @@ bool sweeps_a_box(const Vec3& displacement) { return std::ranges::count(displace
 // Refuses paths that take too long to follow. Whether there are paths.
 bool check_paths(const Scene& scene, double edge, const Cell& period) {
   constexpr double kMostStops = 5e6;  // some seconds
-  const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
+  const double duration = scene.planned_duration();
   std::vector<double> moved(scene.rule.types.size(), 0);  // by type, its particles
   for (const uint8_t type : scene.body.type) ++moved[type];
   double stops = 0;
@@ -226,7 +226,7 @@ std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, co
     return x;
   };
   if (axes == 2) margin.z() = 0;
-  const double duration = static_cast<double>(scene.steps) * scene.rule.dt;
+  const double duration = scene.planned_duration();
   Reach reach(edges, origin, period);
   const auto refuse = [&](const std::vector<std::string>& causes, const std::string& what, double count,
                           const std::string& hint) {

@@ -114,7 +114,7 @@ Motion motion_of(const Scene& scene) {
   const Rule& rule = scene.rule;
   Motion motion;
   read_bond(scene, motion);
-  const double c = motion.sound_speed, duration = static_cast<double>(scene.steps) * rule.dt;
+  const double c = motion.sound_speed, duration = scene.planned_duration();
   Box all, held;
   const Body& body = planned_body(scene);
   for (size_t i = 0; i < body.size(); ++i) {

@@ -68,9 +68,7 @@ struct Moving {
 class Motions {
  public:
   Motions(const Scene& scene, const std::vector<Piece>& pieces)
-      : scene_(scene),
-        motion_(motion_of(scene)),
-        duration_(static_cast<double>(scene.steps) * scene.rule.dt) {
+      : scene_(scene), motion_(motion_of(scene)), duration_(scene.planned_duration()) {
     spacing_ = motion_.rest_distance;
     strain_ = strongest_strain(scene, spacing_);
     for (const Piece& piece : pieces)

@@ -98,7 +98,7 @@ class ProbeErrors::Estimate {
         sections_(facts.sections),
         parts_(facts.parts) {
     const auto count = static_cast<double>(scene.body.size());
-    time_ = static_cast<double>(scene.steps) * scene.rule.dt;
+    time_ = scene.planned_duration();
     // Of a ramp the root mean square is 1/sqrt(3) of its end, of a vibration 1/sqrt(2) of its largest.
     const double of_curve = std::sqrt(facts.initial ? 2 : 3);
     // A part steps between its two signs as the strain passes units: twice its size. A wave of that stress is

@@ -169,7 +169,19 @@ void read_length(const ConfigTable& table, Scene& scene) {
 // s, as the keys say it, of time steps of `dt`.
 double length_of_run(const ConfigTable& table, double dt) {
   if (table.has("duration")) return table.number("duration", quantity::time, Range::positive());
-  return static_cast<double>(table.at("steps").integer(0, INT64_MAX)) * dt;
+  const ConfigValue steps = table.has("planned_steps") ? table.at("planned_steps") : table.at("steps");
+  return static_cast<double>(steps.integer(0, INT64_MAX)) * dt;
+}
+
+// A run that is cut short keeps the bits of the whole one.
+void read_planned_steps(const ConfigTable& table, const StagePart* stage, Scene& scene) {
+  const auto planned = table.find("planned_steps");
+  if (!planned) return;
+  scene.planned_steps = static_cast<uint64_t>(planned->integer(0, INT64_MAX));
+  if (scene.planned_steps < scene.steps)
+    planned->fail(fmt::format("'planned_steps' is less than the run's {} steps", scene.steps),
+                  "cells and formats must hold all of the run");
+  if (stage && stage->parts() > 1) planned->fail("'planned_steps' does not go with 'parts'");
 }
 
 // What the box's strain of the end asks of the time step: of the body as packed, stretched with the box. A
@@ -264,6 +276,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, S
   for (const ConfigTable* table : {&run, static_cast<const ConfigTable*>(stage)})
     if (table) table->not_both("steps", "duration");
   read_length(timed(run, stage), scene);
+  read_planned_steps(timed(run, stage), stage, scene);
   const uint64_t whole = scene.steps, parts = stage ? stage->parts() : 1;
   scene.steps = (whole + parts - 1) / parts;
   const auto given = [&](const char* key) {
@@ -421,7 +434,8 @@ Scene scene_of(const ConfigTable& root, const std::string& path, const SceneChoi
   read_time(root, stage, listed, scene);
   if (scene.loading) check_static_rule(root, scene.rule);
   if (scene.asked_deform) {
-    scene.asked_deform->steps = scene.steps * (stage ? stage->parts() - stage->part() : 1);
+    scene.asked_deform->steps =
+        std::max(scene.steps, scene.planned_steps) * (stage ? stage->parts() - stage->part() : 1);
     // A stage behind another, or a run from another's end, begins in the box that was left.
     const bool begins = scene.start.empty() && (!stage || stage_names(root).front().name == scene.stage);
     if (!begins)

@@ -166,9 +166,10 @@ struct Scene {
   double expected_strain = 0;  // 0: what the scene's motion tells (model/analysis/motion.h)
   std::vector<Probe> probes;
   uint64_t steps = 0;
-  uint64_t probe_every = 0;   // 0: never
-  uint64_t energy_every = 0;  // a multiple of probe_every; 0: first and last only
-  uint64_t frame_every = 0;   // 0: first and last only
+  uint64_t planned_steps = 0;  // cells and formats are those of a run of so many steps, where they are more
+  uint64_t probe_every = 0;    // 0: never
+  uint64_t energy_every = 0;   // a multiple of probe_every; 0: first and last only
+  uint64_t frame_every = 0;    // 0: first and last only
   std::optional<Until> until;
   std::optional<StaticLoading> loading;  // probes and frames are then those of whole load steps
   Places places;                         // of the file's keys
@@ -176,6 +177,9 @@ struct Scene {
   // What regions, displacements and strains count from.
   const Body& packing() const { return packed ? *packed : body; }
   const Periodic& packing_box() const { return deform ? deform->packed : periodic; }
+
+  // s, that cells and formats must hold.
+  double planned_duration() const { return static_cast<double>(std::max(steps, planned_steps)) * rule.dt; }
 
   bool deforms() const { return deform && deform->moves(); }
   Periodic box_at(uint64_t step) const { return deform ? deform->at(step) : periodic; }

@@ -326,26 +326,36 @@ std::vector<int> assign_materials(const ConfigTable& root, const Regions& region
   return material;
 }
 
-// What a stage says of the constraints, by their names.
-std::map<std::string, ConfigTable> constraint_changes(const ConfigTable& root, const StagePart* stage) {
+// What a stage says of the scene's constraints, by their names, and the constraints of its own.
+struct StageConstraints {
   std::map<std::string, ConfigTable> changes;
-  if (!stage) return changes;
+  std::vector<ConfigTable> own;
+};
+
+StageConstraints stage_constraints(const ConfigTable& root, const StagePart* stage) {
+  StageConstraints found;
+  if (!stage) return found;
   std::vector<std::string> names;
   for (const ConfigTable& table : root.tables("constraint")) names.push_back(table.at("name").string());
   for (const ConfigTable& table : stage->tables("constraint")) {
     table.record_as("constraint");
+    if (table.has("kind")) {
+      found.own.push_back(table);
+      continue;
+    }
     const ConfigValue name = table.at("name");
-    if (names.empty()) name.fail("the scene has no [[constraint]]");
+    if (names.empty())
+      name.fail("the scene has no [[constraint]]", "one of the stage's own has 'kind' and 'region'");
     name.choice("constraint", names);
     const std::array keys = {"velocity", "force", "traction", "free"};
     for (size_t k = 0; k < keys.size(); ++k)
       for (size_t other = 0; other < k; ++other) table.not_both(keys[other], keys[k]);
     if (std::ranges::none_of(keys, [&](const char* key) { return table.has(key); }))
       table.fail("a stage gives a constraint 'velocity', 'force', 'traction' or 'free'");
-    if (!changes.try_emplace(name.string(), table).second)
+    if (!found.changes.try_emplace(name.string(), table).second)
       name.fail(fmt::format("constraint '{}' is there twice", name.string()));
   }
-  return changes;
+  return found;
 }
 
 const std::vector<std::string> kConstraintKinds = {"held", "moved", "held_by_force", "moved_by_force",
@@ -586,15 +596,17 @@ size_t read_body(const ConfigTable& root, const StagePart* stage, const Regions&
   if (stage)
     if (const auto own = stage->find("gravity")) gravity = stage->vector_of(*own, quantity::acceleration);
   check_gravity(planes, gravity);
-  const std::map<std::string, ConfigTable> changes = constraint_changes(root, stage);
+  const StageConstraints of_stage = stage_constraints(root, stage);
+  std::vector<ConfigTable> tables = root.tables("constraint");
+  tables.insert(tables.end(), of_stage.own.begin(), of_stage.own.end());
   std::vector<int> constraint(body.size(), -1);
   std::vector<ParticleType> constraints;
   std::vector<Vec3> pull;  // N, on each particle of a constraint
   std::vector<ConfigValue> pulled_regions;
-  for (const ConfigTable& table : root.tables("constraint")) {
+  for (const ConfigTable& table : tables) {
     if (constraints.size() == kMaxTypes) table.fail(fmt::format("more than {} constraints", kMaxTypes));
-    const auto found = changes.find(table.at("name").string());
-    const ConfigTable* change = found == changes.end() ? nullptr : &found->second;
+    const auto found = of_stage.changes.find(table.at("name").string());
+    const ConfigTable* change = found == of_stage.changes.end() ? nullptr : &found->second;
     ParticleType type = read_constraint(table, change, stage, scene.rule, scene.pitch);
     type.name = read_name(table.at("name"));
     for (const ParticleType& other : constraints)
