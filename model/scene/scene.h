@@ -3,6 +3,7 @@
 // docs/user/scene.md is the reference of the file format.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
