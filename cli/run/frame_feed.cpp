@@ -146,13 +146,23 @@ void FrameFeed::obey(bool waits) {
         has_ended_ = true;
         raise(SIGINT);
         return;
+      case FeedWord::cut:
+        is_cut_ = true;
+        break;
     }
   }
 }
 
-void FrameFeed::show(const Frame& frame, const State* state) {
+bool FrameFeed::is_cut() {
+  char word = 0;
+  while (socket_ >= 0 && recv(socket_, &word, 1, MSG_DONTWAIT) == 1)
+    is_cut_ = is_cut_ || static_cast<FeedWord>(word) == FeedWord::cut;
+  return is_cut_;
+}
+
+void FrameFeed::show(const Frame& frame, const State* state, bool last) {
   obey(false);
-  if (!paused_ && Clock::now() < next_) return;
+  if (!paused_ && !last && Clock::now() < next_) return;
   const auto began = Clock::now();
   const auto spent = [&] { return (kShare - 1) * (Clock::now() - began); };
   // What a page that is stuck costs is a twenty-fifth, too.

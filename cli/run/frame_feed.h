@@ -18,7 +18,8 @@ namespace cuboct {
 inline constexpr const char* kViewSocket = ".view";
 
 // A byte from the page to the run.
-enum class FeedWord : char { pause = 'p', go_on = 'g', one_frame = 's', end = 'e' };
+// cut: an interrupt follows, which ends the run as whole.
+enum class FeedWord : char { pause = 'p', go_on = 'g', one_frame = 's', end = 'e', cut = 'c' };
 
 // A message: this, `blocks` times the next, the JSON, and the blocks' bytes. The first message of a run has
 // its head and no blocks.
@@ -49,12 +50,14 @@ class FrameFeed {
   FrameFeed& operator=(const FrameFeed&) = delete;
 
   // Takes a twenty-fifth of the run's time at most: frames that come sooner are left out, but for those that
-  // a page waits for one by one. Without a page, a system call.
-  void show(const Frame& frame, const State* state);
+  // a page waits for one by one, and but for the `last`. Without a page, a system call.
+  void show(const Frame& frame, const State* state, bool last);
   // Goes with the next frame that is shown.
   void read(const std::vector<Curve>& of, uint64_t step, Values values);
   // Whether the page has asked for the run's end.
   bool has_ended() const { return has_ended_; }
+  // Of a run that was interrupted: whether a page did that, to whom what was done is all of it.
+  bool is_cut();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -70,7 +73,8 @@ class FrameFeed {
   ThinnedReadings all_{kAll}, fresh_{kFresh};
   std::vector<Curve> curves_;  // without readings
   int socket_ = -1;
-  bool paused_ = false, has_all_ = false, has_ended_ = false;  // has_all: the page, but for the fresh ones
+  bool paused_ = false, has_all_ = false;  // has_all: the page, but for the fresh ones
+  bool has_ended_ = false, is_cut_ = false;
   Clock::time_point next_ = Clock::now();
 };
 

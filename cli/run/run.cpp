@@ -189,7 +189,9 @@ Ended run_once(const RunOptions& given, Pages& pages) {
     kept.csv = options.csv;
     kept.cycles = counts_cycles(options);
     kept.rest = rest_of(options, loaded, request.steps, request.probes.size());
-    kept.see = [&](const Frame& frame, const State* state) { feed->show(frame, state); };
+    kept.see = [&, last = request.steps](const Frame& frame, const State* state) {
+      feed->show(frame, state, frame.step == last || interrupted());
+    };
     recorder.emplace(std::move(kept), loaded);
     feed.emplace(options.out, head, frame_style(scene), loaded.setup.plan.particles, options.engine);
     if (options.view) pages.all.push_back(std::make_unique<RunPage>(options.out, options.opens));
@@ -207,12 +209,13 @@ Ended run_once(const RunOptions& given, Pages& pages) {
                            scratch.path(options.engine + ".h5"), true)
                      .finish();
   Trace& trace = run.trace;
-  trace.asked = steps;
+  const bool cut = run.interrupted && feed && feed->is_cut();
+  trace.asked = cut ? trace.steps() : steps;
   note_start(trace, loaded, real);
   Items summary = summarise(loaded, run, real);
   add_end(summary, trace);
   // Run to its end, or to a fault, it has nothing left to do.
-  const bool unfinished = run.interrupted && !trace.stop;
+  const bool unfinished = run.interrupted && !trace.stop && !cut;
   std::string trouble = run.trouble;
   const char* state = !trouble.empty() ? "incomplete"
                       : trace.stop     ? "stopped"

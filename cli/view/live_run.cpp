@@ -68,8 +68,8 @@ std::string socket_path(const std::string& directory) { return directory + "/" +
 
 }  // namespace
 
-LiveRun::LiveRun(std::string directory, std::string log)
-    : directory_(std::move(directory)), log_(std::move(log)) {
+LiveRun::LiveRun(std::string directory, std::string log, Begins begins)
+    : directory_(std::move(directory)), log_(std::move(log)), begins_(begins) {
   const int other = connect_in(directory_);
   const bool stopped = other < 0 && errno == EAGAIN, own = other >= 0 && is_own(other);
   if (other >= 0) close(other);
@@ -123,6 +123,11 @@ void LiveRun::take(int run) {
     const std::lock_guard lock(guard_);
     run_ = run;
     state_ = "running";
+    // Also to who only looks whether somebody listens, and sends no frame.
+    constexpr char kOneFrame[] = {static_cast<char>(FeedWord::pause), static_cast<char>(FeedWord::one_frame)};
+    if (begins_ == Begins::with_one_frame && frames_.empty() &&
+        ::send(run, kOneFrame, sizeof kOneFrame, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof kOneFrame)
+      state_ = "paused";
   }
   try {
     while (take_message(run)) continue;
@@ -284,7 +289,8 @@ bool LiveRun::command(const std::string& word) {
   constexpr std::pair<const char*, FeedWord> kWords[] = {{"pause", FeedWord::pause},
                                                          {"continue", FeedWord::go_on},
                                                          {"step", FeedWord::one_frame},
-                                                         {"end", FeedWord::end}};
+                                                         {"end", FeedWord::end},
+                                                         {"cut", FeedWord::cut}};
   const auto* known = std::ranges::find(kWords, word, [](const auto& one) { return std::string(one.first); });
   if (known == std::end(kWords)) return false;
   const std::lock_guard lock(guard_);

@@ -17,9 +17,11 @@ namespace cuboct {
 
 class LiveRun : public ViewSource {
  public:
+  // with_one_frame: paused behind the first that follows its start.
+  enum class Begins : uint8_t { going, with_one_frame };
   // Listens in the run's directory, which is there. `log`: the file of the run's stderr; empty: not known.
   // InputError where another page listens there.
-  LiveRun(std::string directory, std::string log);
+  LiveRun(std::string directory, std::string log, Begins begins = Begins::going);
   ~LiveRun() override;
 
   bool has_frames() const;
@@ -53,6 +55,7 @@ class LiveRun : public ViewSource {
   void read_log();
 
   std::string directory_, log_;
+  Begins begins_;
   int listener_ = -1, spool_ = -1, wake_ = -1;  // spool: the blocks of all frames, a file without a name
   off_t end_ = 0;
   std::thread thread_;

@@ -41,8 +41,7 @@ class ViewSource {
   // Of the machine: "nodes", "held" of frame k, "spans" of step k; null where there is none.
   virtual Bytes machine(const std::string&, size_t) { return nullptr; }
   virtual bool command(const std::string& word) = 0;  // false: nothing here follows it
-  // Another velocity, "1/0.5/0/0": of the constraint of that number, m/s. Nothing where none can change;
-  // empty, or why not.
+  // What a page changes of its run (steered_run.cpp). Nothing where it cannot; empty, or why not.
   virtual std::optional<std::string> steer(const std::string&) { return std::nullopt; }
   // The run that is compared with this one; null: none.
   virtual ViewSource* beside() { return nullptr; }

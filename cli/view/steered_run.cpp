@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -34,7 +35,26 @@ std::optional<double> number_in(std::string_view text) {
 
 bool SteeredRun::next() {
   const std::lock_guard lock(guard_);
+  cut_ = false;
   return !ended_ && scene_.next();
+}
+
+void SteeredRun::ended(uint64_t done) {
+  const std::lock_guard lock(guard_);
+  scene_.ended(done);
+}
+
+LiveRun::Begins SteeredRun::begins() {
+  const std::lock_guard lock(guard_);
+  paused_ = begins_ == LiveRun::Begins::with_one_frame;
+  return std::exchange(begins_, LiveRun::Begins::going);
+}
+
+// Before its first frame a part has nobody who listens.
+bool SteeredRun::cuts() {
+  const std::lock_guard lock(guard_);
+  if (cut_ || ended_ || paused_ || parts_.empty() || !scene_.has_change()) return false;
+  return cut_ = parts_.back().run->command("cut");
 }
 
 void SteeredRun::begin(std::shared_ptr<LiveRun> run) {
@@ -84,16 +104,21 @@ LiveRun::Seen SteeredRun::seen(size_t frames, size_t lines) {
 
 std::string SteeredRun::steered() const {
   const std::lock_guard lock(guard_);
-  const std::string led = json_array(scene_.led(), [](const SteeredScene::Led& one) {
-    const Vec3& v = one.velocity;
-    return json_object({{"name", json(one.name)}, {"velocity", json(std::vector<double>{v[0], v[1], v[2]})}});
+  const auto three = [](const Vec3& v) { return json(std::vector<double>{v[0], v[1], v[2]}); };
+  const SteeredScene::Wanted& wanted = scene_.wanted();
+  const std::string led = json_array(wanted.led, [&](const SteeredScene::Led& one) {
+    return json_object({{"name", json(one.name)}, {"velocity", three(one.velocity)}});
   });
   return json_object({{"led", led},
+                      {"gravity", three(wanted.gravity)},
+                      {"damping", json(wanted.damping)},
                       {"part", std::to_string(scene_.part())},
-                      {"parts", std::to_string(scene_.parts())},
-                      {"next", scene_.next_first() < scene_.steps() && !over_ && !ended_
-                                   ? std::to_string(scene_.next_first())
-                                   : "null"}});
+                      {"first", std::to_string(scene_.first())},
+                      {"steps", std::to_string(scene_.steps())},
+                      {"waits", json(scene_.has_change())},
+                      {"over", json(over_ || ended_)},
+                      {"radius", json(scene_.usual_radius())},
+                      {"for", std::to_string(scene_.usual_steps())}});
 }
 
 std::string SteeredRun::story() {
@@ -129,31 +154,52 @@ Bytes SteeredRun::block(size_t frame, size_t block, std::optional<size_t> row) {
   return run ? run->block(frame, block, row) : nullptr;
 }
 
+// Of a run that waits, changes come into force as it goes on.
 bool SteeredRun::command(const std::string& word) {
   std::shared_ptr<LiveRun> run;
   {
     const std::lock_guard lock(guard_);
     if (over_) return false;
     if (word == "end") ended_ = true;
+    const bool goes = word == "continue" || word == "step";
+    if (goes && scene_.has_change()) {
+      if (word == "step") begins_ = LiveRun::Begins::with_one_frame;
+      paused_ = false;
+      return true;
+    }
+    if (goes || word == "pause") paused_ = word != "continue";
     if (!parts_.empty()) run = parts_.back().run;
   }
   return (run && run->command(word)) || word == "end";
 }
 
+// "velocity/K/X/Y/Z", "gravity/X/Y/Z", "damping/C" and "pull/PARTICLE/RADIUS/X/Y/Z/STEPS".
 std::optional<std::string> SteeredRun::steer(const std::string& words) {
-  std::vector<double> numbers;
-  for (size_t at = 0; at <= words.size();) {
-    const size_t end = std::min(words.find('/', at), words.size());
-    const std::optional<double> number = number_in(std::string_view(words).substr(at, end - at));
+  const size_t slash = words.find('/');
+  const std::string what = words.substr(0, slash);
+  std::vector<double> n;
+  for (size_t at = slash; at < words.size();) {
+    const size_t end = std::min(words.find('/', at + 1), words.size());
+    const std::optional<double> number = number_in(std::string_view(words).substr(at + 1, end - at - 1));
     if (!number) return std::nullopt;
-    numbers.push_back(*number);
-    at = end + 1;
+    n.push_back(*number);
+    at = end;
   }
-  if (numbers.size() != 4 || numbers[0] < 0 || numbers[0] > 1e6) return std::nullopt;
+  const auto whole = [&](size_t k) { return n[k] >= 0 && n[k] <= 1e15 && n[k] == std::floor(n[k]); };
+  const auto count = [&](size_t k) { return static_cast<uint64_t>(n[k]); };
   const std::lock_guard lock(guard_);
-  if (over_ || ended_) return "the run is over";
   try {
-    scene_.set(static_cast<size_t>(numbers[0]), {numbers[1], numbers[2], numbers[3]});
+    if (over_ || ended_) return "the run is over";
+    if (what == "velocity" && n.size() == 4 && whole(0))
+      scene_.set_velocity(count(0), {n[1], n[2], n[3]});
+    else if (what == "gravity" && n.size() == 3)
+      scene_.set_gravity({n[0], n[1], n[2]});
+    else if (what == "damping" && n.size() == 1)
+      scene_.set_damping(n[0]);
+    else if (what == "pull" && n.size() == 6 && whole(0) && whole(5))
+      scene_.pull({count(0), n[1], {n[2], n[3], n[4]}, count(5)});
+    else
+      return std::nullopt;
   } catch (const InputError& error) {
     const ErrorParts parts = parts_of(error);
     return parts.hint.empty() ? parts.message : parts.message + ": " + parts.hint;

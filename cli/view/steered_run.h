@@ -20,8 +20,14 @@ class SteeredRun : public ViewSource {
 
   // The next part; false: there is none, or the page has ended the run.
   bool next();
+  // The part at hand did so many steps.
+  void ended(uint64_t done);
+  // How the part that is to come begins: a page that waited for one frame waits again behind it.
+  LiveRun::Begins begins();
   // Its frames come from here on.
   void begin(std::shared_ptr<LiveRun> run);
+  // Once true: the part at hand is to end here, whole, so that a change comes into force. It has been told.
+  bool cuts();
   void end();
   bool has_frames() const;
 
@@ -43,7 +49,9 @@ class SteeredRun : public ViewSource {
   mutable std::mutex guard_;
   SteeredScene& scene_;
   std::vector<Part> parts_;
-  bool ended_ = false, over_ = false;  // by the page; all is done
+  LiveRun::Begins begins_ = LiveRun::Begins::going;
+  // By the page: ended, and paused, so that changes wait. over: all is done. cut: the part at hand is told.
+  bool ended_ = false, paused_ = false, over_ = false, cut_ = false;
 };
 
 }  // namespace cuboct

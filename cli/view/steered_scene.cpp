@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hw/engine/scene_engine.h"
@@ -25,10 +26,28 @@ std::string constraint_of(const ParticleType& type) {
   throw InputError(fmt::format("--steer: {} {}", path, what), hint);
 }
 
+// As a scene has them; in one of reduced units without `unit`.
+struct Numbers {
+  bool reduced;
+  std::string vector(const Vec3& v, const char* unit) const {
+    const std::string numbers = fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v[0], v[1], v[2]);
+    return reduced ? numbers : fmt::format("\"{} {}\"", numbers, unit);
+  }
+  std::string number(double value, const char* unit) const {
+    return reduced ? fmt::format("{:.17g}", value) : fmt::format("\"{:.17g} {}\"", value, unit);
+  }
+};
+
+// The name that no constraint of the scene has.
+std::string hand_name(const std::vector<SteeredScene::Led>& led) {
+  std::string name = "hand";
+  while (std::ranges::any_of(led, [&](const auto& one) { return one.name == name; })) name += "-";
+  return name;
+}
+
 }  // namespace
 
-SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::string directory, uint64_t steps,
-                           uint64_t parts)
+SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::string directory, uint64_t steps)
     : asked_(std::move(asked)), engine_(std::move(engine)), real_(real), directory_(std::move(directory)) {
   const std::string& path = asked_.scene;
   const Scene scene = read_scene(path);
@@ -38,20 +57,27 @@ SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::stri
   dt_ = scene.rule.dt;
   reduced_ = scene.boltzmann == 1;
   steps_ = steps > 0 ? steps : scene.steps;
-  each_ = std::max<uint64_t>(1, (steps_ + parts - 1) / parts);
+  packing_ = scene.body.x;
+  if (!packing_.empty()) {
+    Vec3 low = packing_[0], high = packing_[0];
+    for (const Vec3& x : packing_) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    radius_ = std::max((high - low).maxCoeff() / 10, first_shell(scene));
+  }
+  wanted_.damping = own_.damping = scene.rule.damping.coefficient;
+  if (!scene.rule.types.empty())
+    wanted_.gravity = own_.gravity = scene.rule.types[0].gravity - scene.rule.types[0].pull;
+  std::vector<Led>& led = wanted_.led;
   for (const ParticleType& type : scene.rule.types) {
     const std::string name = constraint_of(type);
-    if (name.empty() || std::ranges::any_of(led_, [&](const Led& one) { return one.name == name; })) continue;
+    if (name.empty() || std::ranges::any_of(led, [&](const Led& one) { return one.name == name; })) continue;
+    led.push_back({name, type.velocity});
     try {  // one that is held takes no velocity
-      parse_scene(text_ + stage_text({{name, type.velocity}}, 1, 1), path,
-                  {.begins = true, .stage = "part-1"});
+      parse_scene(text_ + text_of({wanted_, {}, 1}, 1, {}), path, {.begins = true, .stage = "part-1"});
     } catch (const InputError&) {
-      continue;
+      led.pop_back();
     }
-    led_.push_back({name, type.velocity});
   }
-  if (led_.empty()) refuse(path, "moves nothing", "a constraint of kind 'moved' has a velocity");
-  own_ = led_;
+  own_ = wanted_;
   try {
     parse_scene(text_, this->path());
   } catch (const InputError&) {
@@ -60,46 +86,102 @@ SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::stri
   }
 }
 
-// Velocities that the scene has itself are left to it, digit by digit.
-std::string SteeredScene::stage_text(const std::vector<Led>& led, uint64_t number, uint64_t steps) const {
-  std::string changes;
-  for (size_t k = 0; k < led.size(); ++k) {
-    const Vec3& v = led[k].velocity;
-    if (k < own_.size() && v == own_[k].velocity) continue;
-    const std::string numbers = fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v[0], v[1], v[2]);
-    changes += fmt::format("{}{{ name = {}, velocity = {} }}", changes.empty() ? "" : ", ", json(led[k].name),
-                           reduced_ ? numbers : "\"" + numbers + " m/s\"");
+// What the scene has itself is left to it, digit by digit.
+std::string SteeredScene::text_of(const Stage& stage, uint64_t number, std::optional<uint64_t> done) const {
+  const Numbers write{reduced_};
+  std::string changes, keys;
+  const auto add = [&](const std::string& name, const std::string& keys) {
+    changes += fmt::format("{}{{ name = {}, {} }}", changes.empty() ? "" : ", ", json(name), keys);
+  };
+  const Wanted& wanted = stage.wanted;
+  for (size_t k = 0; k < wanted.led.size(); ++k)
+    if (k >= own_.led.size() || wanted.led[k].velocity != own_.led[k].velocity)
+      add(wanted.led[k].name, "velocity = " + write.vector(wanted.led[k].velocity, "m/s"));
+  if (wanted.gravity != own_.gravity)
+    keys += fmt::format("gravity = {}\n", write.vector(wanted.gravity, "m/s^2"));
+  if (wanted.damping != own_.damping)
+    keys += fmt::format("damping = {{ coefficient = {} }}\n", write.number(wanted.damping, "kg/s"));
+  if (stage.pull) {
+    const Pull& pull = *stage.pull;
+    const Vec3 velocity = pull.way / (static_cast<double>(pull.steps) * dt_);
+    add(hand_name(own_.led),
+        fmt::format(
+            "kind = \"moved\", velocity = {}, region = {{ shape = \"sphere\", centre = {}, radius = {} }}",
+            write.vector(velocity, "m/s"), write.vector(packing_[pull.particle], "m"),
+            write.number(pull.radius, "m")));
   }
-  return fmt::format("\n[[stage]]\nname = \"part-{}\"\nsteps = {}\n{}", number, steps,
-                     changes.empty() ? "" : "constraint = [" + changes + "]\n");
+  if (!changes.empty()) keys += "constraint = [" + changes + "]\n";
+  std::string length = fmt::format("steps = {}\n", done.value_or(stage.steps));
+  if (done && *done < stage.steps) length += fmt::format("planned_steps = {}\n", stage.steps);
+  return fmt::format("\n[[stage]]\nname = \"part-{}\"\n{}{}", number, length, keys);
 }
 
 std::string SteeredScene::place() const { return fmt::format("{}/{}-{}", directory_, part_, stage()); }
 
-uint64_t SteeredScene::next_first() const { return part_ == 0 ? 0 : std::min(steps_, first_ + each_); }
-
-void SteeredScene::set(size_t which, const Vec3& velocity) {
-  if (which >= led_.size()) throw InputError("there is no such constraint");
-  if (!velocity.allFinite()) throw InputError("the velocity is not finite");
-  if (next_first() >= steps_) throw InputError("the last part of the run goes: no change would be in force");
-  std::vector<Led> led = led_;
-  led[which].velocity = velocity;
-  // What its plan refuses, as formats that cannot hold it, is refused before the run is. The state it begins
-  // with is not there yet: of the packing it is told as well.
-  const uint64_t steps = std::min(each_, steps_ - next_first());
-  const Scene scene = load_scene(text_ + stage_text(led, part_ + 1, steps), path(),
-                                 {fmt::format("part-{}", part_ + 1), "", true});
+// What its plan refuses, as formats that cannot hold it, is refused before the run is. The state that it
+// begins with is not there yet: of the packing it is told as well.
+void SteeredScene::check(const Stage& stage) const {
+  const std::string name = fmt::format("part-{}", part_ + 1);
+  const Scene scene =
+      load_scene(text_ + (part_ > 0 ? text_of(now_, part_, {}) : "") + text_of(stage, part_ + 1, {}), path(),
+                 {name, "", true});
   static_cast<void>(scene_plan_of(scene, read_arch(asked_.arch), engine_, real_));
-  led_ = std::move(led);
+}
+
+void SteeredScene::take(Wanted wanted) {
+  check({wanted, {}, left()});
+  wanted_ = std::move(wanted);
+  changed_ = true;
+}
+
+void SteeredScene::set_velocity(size_t which, const Vec3& velocity) {
+  Wanted wanted = wanted_;
+  if (which >= wanted.led.size()) throw InputError("there is no such constraint");
+  if (!velocity.allFinite()) throw InputError("the velocity is not finite");
+  wanted.led[which].velocity = velocity;
+  take(std::move(wanted));
+}
+
+void SteeredScene::set_gravity(const Vec3& gravity) {
+  Wanted wanted = wanted_;
+  if (!gravity.allFinite()) throw InputError("the gravity is not finite");
+  wanted.gravity = gravity;
+  take(std::move(wanted));
+}
+
+void SteeredScene::set_damping(double coefficient) {
+  Wanted wanted = wanted_;
+  if (!(coefficient >= 0) || std::isinf(coefficient))
+    throw InputError("damping is a finite number, not below 0");
+  wanted.damping = coefficient;
+  take(std::move(wanted));
+}
+
+void SteeredScene::pull(const Pull& asked) {
+  if (asked.particle >= packing_.size()) throw InputError("there is no such particle");
+  if (!asked.way.allFinite() || !(asked.radius > 0) || std::isinf(asked.radius) || asked.steps == 0)
+    throw InputError("a pull has a way, a radius above 0 and a step at least");
+  Pull pull = asked;
+  pull.steps = std::min(pull.steps, left());
+  check({wanted_, pull, pull.steps});
+  pull_ = pull;
+  changed_ = true;
 }
 
 bool SteeredScene::next() {
-  first_ = next_first();
-  if (first_ >= steps_) return false;
+  if (left() == 0) return false;
+  now_ = {wanted_, std::exchange(pull_, std::nullopt), left()};
+  if (now_.pull) now_.steps = now_.pull->steps = std::min(now_.pull->steps, left());
+  changed_ = false;
   ++part_;
-  text_ += stage_text(led_, part_, std::min(each_, steps_ - first_));
-  write_text(path(), text_);
+  write_text(path(), text_ + text_of(now_, part_, {}));
   return true;
+}
+
+void SteeredScene::ended(uint64_t done) {
+  text_ += text_of(now_, part_, done);
+  write_text(path(), text_);
+  first_ += done;
 }
 
 }  // namespace cuboct

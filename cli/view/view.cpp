@@ -32,8 +32,7 @@ struct ViewOptions {
   bool no_open = false, while_run = false, limit_given = false, port_given = false, particles_given = false;
   // Of a run that is started.
   std::string arch, engine, out, steps, frame_every;
-  bool force = false, cycles = false;
-  uint64_t steer = 0;  // parts
+  bool force = false, cycles = false, steer = false;
   Answer answer;
 };
 
@@ -101,7 +100,7 @@ std::vector<std::string> run_words(const ViewOptions& options, const std::string
   return words;
 }
 
-// A scene in parts; `asked` but for its directory.
+// A scene whose page changes it; `asked` but for its directory.
 int steer(const ViewOptions& options, WatchAsked asked) {
   if (options.out.empty())
     throw InputError("--steer needs --out DIR, where the scene of stages lies that the page makes");
@@ -112,7 +111,7 @@ int steer(const ViewOptions& options, WatchAsked asked) {
                      "another --out keeps it; --force puts that of this run in its place");
   const uint64_t steps = options.steps.empty() ? 0 : std::stoull(options.steps);
   SteeredScene scene({.scene = options.what, .arch = options.arch}, engine, engine_row(engine).real,
-                     options.out, steps, options.steer);
+                     options.out, steps);
   std::vector<std::string> words{"run",
                                  scene.path(),
                                  "--out",
@@ -148,7 +147,7 @@ int view(const ViewOptions& options) {
     of_scene(!value->empty(), option);
   of_scene(options.force, "--force");
   of_scene(options.cycles, "--cycles");
-  of_scene(options.steer > 0, "--steer");
+  of_scene(options.steer, "--steer");
   check_with(options);
   if (!options.save.empty()) {
     if (!directory)
@@ -181,7 +180,7 @@ int view(const ViewOptions& options) {
     throw InputError(fmt::format("{} is a scene of stages, each with a directory of its own", options.what),
                      fmt::format("cuboct run {} --out DIR, and meanwhile cuboct view DIR/{}", options.what,
                                  stage_title(stages, 0)));
-  if (options.steer > 0) return steer(options, asked);
+  if (options.steer) return steer(options, asked);
   std::optional<Scratch> scratch;
   asked.directory = options.out;
   if (options.out.empty()) asked.directory = scratch.emplace().path("run");
@@ -238,12 +237,9 @@ void add_view(Command& app, int& exit_code) {
                "of a SCENE: begin anew in a DIR whose run did not end, in its place");
   command.flag("--cycles", options->cycles,
                "of a SCENE: count the machine's cycles, for the page of the run that is over");
-  command
-      .option("--steer", options->steer,
-              "of a SCENE: in N parts, so that the page can change imposed velocities from the next part on; "
-              "DIR then holds the scene of stages that gives the same run again",
-              "N")
-      .range(uint64_t{2}, uint64_t{100});
+  command.flag("--steer", options->steer,
+               "of a SCENE: the page changes imposed velocities and pulls particles by mouse; DIR then holds "
+               "the scene of stages that gives the same run again");
   options->answer.add_to(command);
 }
 

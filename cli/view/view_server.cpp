@@ -72,9 +72,9 @@ HttpAnswer ViewServer::answer_of(ViewSource& from, const HttpAsked& asked) {
                ? HttpAnswer{204, {}, std::make_shared<const std::string>()}
                : HttpAnswer{};
   }
-  constexpr std::string_view kVelocity = "velocity/";
-  if (asked.post && asked.path.starts_with(kVelocity)) {
-    const std::optional<std::string> wrong = now->steer(asked.path.substr(kVelocity.size()));
+  constexpr std::string_view kSteer = "steer/";
+  if (asked.post && asked.path.starts_with(kSteer)) {
+    const std::optional<std::string> wrong = now->steer(asked.path.substr(kSteer.size()));
     if (!wrong) return {};
     const int status = wrong->empty() ? 204 : 400;
     return {status, "text/plain; charset=utf-8", std::make_shared<const std::string>(*wrong)};

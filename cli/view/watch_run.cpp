@@ -21,11 +21,13 @@
 #include "cli/view/view_server.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
+#include "model/base/input_file.h"
 #include "model/base/interrupt.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
 #include "model/base/process.h"
 #include "model/base/text.h"
+#include "model/trace/guarded_trace.h"
 
 namespace cuboct {
 namespace {
@@ -176,16 +178,19 @@ int watch_steered(const WatchAsked& asked, SteeredScene& scene, const std::vecto
   while (code == 0 && !interrupted() && all->next()) {
     const std::string summary = scratch.path("summary"), log = scratch.path(scene.stage() + ".log");
     make_directory(scene.place());
-    auto live = std::make_shared<LiveRun>(scene.place(), log);
+    auto live = std::make_shared<LiveRun>(scene.place(), log, all->begins());
     all->begin(live);
     std::vector<std::string> of_part = words;
     of_part.insert(of_part.end(), {"--stage", scene.stage()});
     Process run(beside("cuboct"), of_part, false, {summary, log});
     code = run.wait({}, [&] {
       if (!told && live->has_frames()) tell(asked, server, scratch), told = true;
+      if (all->cuts()) run.interrupt();
       return false;
     });
     fmt::print(stderr, "{}", block_text(read_text(log)));
+    if (const std::string trace = scene.place() + "/trace.h5"; is_file(trace))
+      all->ended(guarded_left_state(trace).step);
     // A part with warnings goes on; one that did not come to its end does not.
     if (code == 1 && !interrupted() && read_record(scene.place()).state == "finished") code = 0;
     if (!told && !all->has_frames()) return code;

@@ -162,6 +162,8 @@ int Process::wait(const std::function<bool()>& begun, const std::function<bool()
   return exit_code(status);
 }
 
+void Process::interrupt() const { kill(pid_, SIGINT); }
+
 bool Process::ended() const {
   siginfo_t found{};
   return waitid(P_PID, static_cast<id_t>(pid_), &found, WEXITED | WNOHANG | WNOWAIT) == 0 &&

@@ -37,6 +37,8 @@ class Process {
   // The same of a program that an interrupt of ours does not end: what it makes belongs to the end of an
   // interrupted run, such as its pictures.
   int finish();
+  // As Ctrl-C in its terminal.
+  void interrupt() const;
   // Whether it has ended, and waits for who asks for its exit code.
   bool ended() const;
 

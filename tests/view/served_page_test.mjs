@@ -217,34 +217,61 @@ async function a_run_of_another_process(browser) {
   assert.equal(await second.end(), 0);
 }
 
-// A velocity is changed in the page, and is in force from the next part on; steps are those of the whole run.
+// A velocity is changed in the page, then particles are pulled by mouse; steps are those of the whole run.
 async function a_steered_run(browser) {
   rmSync(out, {recursive: true, force: true});
   const coupon = fileURLToPath(new URL("../../scenes/coupon.toml", import.meta.url));
-  const server = await view(coupon, "--steer", "3", "--steps", "1500", "--frame-every", "50", "--out", out);
+  const server = await view(coupon, "--steer", "--steps", "100000", "--frame-every", "50", "--out", out);
   const {page, problems, context} = await open(browser, server.address.all, 1280, 900);
   await page.click("#pause");
   await until(page, () => document.getElementById("live").dataset.state === "paused");
-  const from = await page.evaluate(() => cuboct.page.steer.next), inputs = await page.$$("#steer input");
-  assert.equal(inputs.length, 3);
+  const inputs = await page.$$("#steer input");
+  assert.equal(inputs.length, 7);  // a velocity, gravity, damping
   assert.equal(await inputs[0].inputValue(), "5");
   await inputs[1].fill("1e9");
   await page.click("#steer button");
   await until(page, () => /an imposed velocity is/.test(document.getElementById("steer-told").textContent));
   await inputs[1].fill("0"), await inputs[0].fill("-1");
   await page.click("#steer button");
-  await until(page, (told) => document.getElementById("steer-told").textContent === told, `pulled: [-1, 0, 0] from step ${from} on.`);
+  const told = (begin) => until(page, (begin) => document.getElementById("steer-told").textContent.startsWith(begin), begin);
+  await told("pulled: [-1, 0, 0] soon.");
+  await until(page, () => /The change is in force once the run goes on/.test(document.getElementById("steer-now").textContent));
   assert.equal(await too_wide(page) <= 0, true);
+  await page.click("#step");
+  await told("pulled: [-1, 0, 0] from step ");
+  await until(page, () => document.getElementById("live").dataset.state === "paused");
+  // From the middle of the picture upwards: the body is there.
+  await page.check("#pull");
+  await page.fill("#pull-steps", "100");
+  const {x, y, width, height} = await (await page.$("#canvas")).boundingBox(), middle = [x + width / 2, y + height / 2];
+  await page.mouse.move(...middle);
+  await page.mouse.down();
+  await page.mouse.move(middle[0], middle[1] - 60, {steps: 3});
+  await page.evaluate(() => cuboct.page.stage.draw_whole());
+  if (pictures) await page.screenshot({path: `${pictures}/pulled.png`});
+  const way = await page.evaluate(([x, y]) => { const {hand} = cuboct.page.steer; return hand.way(x, y).multiplyScalar(cuboct.page.stage.size).toArray(); },
+    [width / 2, height / 2 - 60]);
+  await page.mouse.up();
+  await told("particle ");
   await page.click("#continue");
+  await until(page, () => / in 100 steps, from step \d+ on\.$/.test(document.getElementById("steer-told").textContent));
+  // The hand has let go.
+  await until(page, () => document.getElementById("steer-now").textContent.startsWith("Part 4, "));
+  await until(page, () => cuboct.story.frames.at(-1).step >= 1000);
+  await page.click("#end");
   await until(page, () => document.getElementById("live").dataset.state === "ended");
-  const steps = await page.evaluate(() => cuboct.story.frames.map(({step}) => step));
-  assert.ok(steps.every((step, k) => k === 0 || step > steps[k - 1]) && steps.at(-1) >= 1000, steps.join());
+  const steps = await page.evaluate(() => cuboct.story.frames.map(({step}) => step)), last = steps.at(-1);
+  assert.ok(steps.every((step, k) => k === 0 || step > steps[k - 1]) && last < 100000, steps.join());
   const curves = await page.evaluate(() => cuboct.story.curves.map(({step}) => step.at(-1)));
-  assert.ok(curves.every((last) => last >= 1000 && last <= 1500), curves.join());
-  await page.waitForSelector("#steer-now:has-text('the last')");
-  assert.ok(readFileSync(out + "/scene.toml", "utf8").includes('velocity = "[-1, 0, 0] m/s"'));
+  assert.ok(curves.every((step) => step >= 1000 && step <= last), curves.join());
+  await until(page, (told) => document.getElementById("steer-now").textContent === told, `The run ended at step ${last} of 100000, in 4 parts.`);
+  const written = readFileSync(out + "/scene.toml", "utf8"), hand = written.match(/name = "hand", kind = "moved", velocity = "\[(.*?)\] m\/s"/);
+  assert.ok(written.includes('velocity = "[-1, 0, 0] m/s"') && hand, written);
+  // The way of the arrow, in 100 time steps.
+  const dt = await page.evaluate(() => cuboct.story.head.dt);
+  hand[1].split(", ").map(Number).forEach((v, k) => assert.ok(Math.abs(v * 100 * dt - way[k]) < 1e-9, hand[1] + " beside " + way));
   if (pictures) await page.screenshot({path: `${pictures}/steered.png`});
-  assert.deepEqual(problems.filter((text) => !/400 \(Bad Request\)/.test(text)), []);
+  assert.deepEqual(problems.filter((text) => !/400 \(Bad Request\)|^dialog: End the run/.test(text)), []);
   await context.close();
   assert.equal(await server.end(), 0);
   return steps.length;

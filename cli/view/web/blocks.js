@@ -77,8 +77,8 @@ export class ServedFrames {
     return (await this.ask(`news?frames=${frames}&lines=${lines}`)).json();
   }
   // Why not; empty: it is taken.
-  async steer(which, velocity) {
-    const answer = await fetch(`velocity/${[which, ...velocity].join("/")}`, {method: "POST", cache: "no-store"});
+  async steer(words) {
+    const answer = await fetch("steer/" + words.join("/"), {method: "POST", cache: "no-store"});
     return answer.status === 204 ? "" : (await answer.text()) || `refused (${answer.status})`;
   }
   async command(word) {

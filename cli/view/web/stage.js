@@ -236,6 +236,18 @@ export class Stage {
     }
     return found;
   }
+  // Of a particle that has a place, in the scene's own units.
+  place_of(index) {
+    const {lower, extent} = this.cloud.material.uniforms, {places} = this.cloud;
+    return new Vector3().fromArray(places, 3 * index).divideScalar(65534).multiply(extent.value).add(lower.value);
+  }
+  // The point under a point of the canvas that is as deep as `place`.
+  across(place, x, y) {
+    const {clientWidth: width, clientHeight: height} = this.renderer.domElement;
+    this.camera.updateMatrixWorld();
+    const depth = place.clone().project(this.camera).z;
+    return new Vector3((2 * x) / width - 1, 1 - (2 * y) / height, depth).unproject(this.camera);
+  }
   choose(index) {
     this.cloud.material.uniforms.chosen.value = index;
     this.draw();
