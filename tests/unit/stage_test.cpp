@@ -99,6 +99,46 @@ TEST(Stage, ARampRunsInPartsOfItsMiddles) {
   EXPECT_EQ(parsed(kRamps, "hold").rule.types.back().velocity, Vec3(0.03, -0.01, 0));
 }
 
+const std::string kHand = R"(
+[[stage]]
+name = "pull"
+steps = 5
+planned_steps = 40
+constraint = [
+  { name = "left", free = true },
+  { name = "hand", kind = "moved", velocity = [0, 0, 0.02], region = { shape = "sphere", radius = 1.2 } },
+]
+
+[[stage]]
+name = "rest"
+)";
+
+// Of the packing, and of that stage alone. Later constraints take particles from earlier ones.
+TEST(Stage, MayHaveConstraintsOfItsOwn) {
+  const Scene pull = parsed(kHand, "pull"), rest = parsed(kHand, "rest"), base = parsed("", "");
+  const auto of = [](const Scene& scene, const std::string& name) {
+    std::vector<uint32_t> ids;
+    for (uint32_t id = 0; id < scene.body.size(); ++id)
+      if (scene.rule.types[scene.body.type[id]].name == name) ids.push_back(id);
+    return ids;
+  };
+  std::vector<uint32_t> near;
+  for (uint32_t id = 0; id < base.body.size(); ++id)
+    if (base.body.x[id].norm() <= 1.2) near.push_back(id);
+  ASSERT_FALSE(near.empty());
+  EXPECT_EQ(of(pull, "matter/hand"), near);
+  EXPECT_EQ(pull.rule.types[pull.body.type[near[0]]].velocity, Vec3(0, 0, 0.02));
+  EXPECT_EQ(rest.body.type, base.body.type);
+  EXPECT_EQ(rest.rule.types.size(), base.rule.types.size());
+}
+
+TEST(Stage, IsPlannedForMoreStepsThanItHas) {
+  const Scene pull = parsed(kHand, "pull"), rest = parsed(kHand, "rest");
+  EXPECT_EQ(pull.steps, 5u);
+  EXPECT_DOUBLE_EQ(pull.planned_duration(), 40 * pull.rule.dt);
+  EXPECT_DOUBLE_EQ(rest.planned_duration(), static_cast<double>(rest.steps) * rest.rule.dt);
+}
+
 std::string refusal(const std::string& more, const std::string& stage) {
   try {
     parsed(more, stage);
@@ -117,6 +157,12 @@ TEST(Stage, IsRefusedWithItsPlace) {
   EXPECT_EQ(refusal("[[stage]]\nname = \"a\"\n[[stage]]\nname = \"a\"\n", "a"),
             "s.toml:51:8: stage 'a' is there twice");
   const std::string a = "[[stage]]\nname = \"a\"\n";
+  EXPECT_EQ(refusal(a + "steps = 9\nplanned_steps = 8\n", "a"),
+            "s.toml:52:17: 'planned_steps' is less than the run's 9 steps");
+  EXPECT_EQ(refusal(a + "constraint = [{ name = \"left\", kind = \"held\", region = { shape = \"sphere\", "
+                        "radius = 1 } }]\n",
+                    "a"),
+            "s.toml:51:26: constraint 'left' is there twice");
   EXPECT_EQ(refusal(a + "constraint = [{ name = \"lift\", free = true }]\n", "a"),
             "s.toml:50:24: unknown constraint 'lift'");
   EXPECT_EQ(refusal(a + "constraint = [{ name = \"left\", velocity = [1, 0, 0] }]\n", "a"),
