@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Pages of runs in headless Chromium, which draws WebGL in software.
+// Pages of runs in headless Chromium, which draws WebGL in software unless CUBOCT_ANGLE names another backend of ANGLE, as gl-egl.
 import {createRequire} from "node:module";
 
-const kFlags = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
+const kAngle = process.env.CUBOCT_ANGLE, kDrawing = kAngle ? [`--use-angle=${kAngle}`, "--ignore-gpu-blocklist"] :
+  ["--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+const kFlags = ["--headless", "--no-sandbox", ...kDrawing, "--no-first-run",
   "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 export const kPatience = 120000;  // ms: what a busy machine may take
 

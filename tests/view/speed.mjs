@@ -54,7 +54,11 @@ try {
     drawn = drawn.filter((time) => time > begin + learns);
     return {still, sharp, particles, rate: (1000 * (drawn.length - 1)) / (drawn.at(-1) - drawn[0])};
   }, [kTurns, kLearns]);
-  console.log(JSON.stringify({bytes, shown, ...turned}));
+  const renderer = await page.evaluate(() => {
+    const gl = cuboct.page.stage.renderer.getContext();
+    return gl.getParameter(gl.getExtension("WEBGL_debug_renderer_info").UNMASKED_RENDERER_WEBGL);
+  });
+  console.log(JSON.stringify({bytes, shown, renderer, ...turned}));
 } finally {
   await browser.close();
 }
