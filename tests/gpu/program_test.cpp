@@ -460,8 +460,11 @@ TEST_F(GpuProgram, RunsARuleOfTextInRealNumbers) {
     }
   }
   EXPECT_EQ(bench_.cuboct({"report", bench_.path("gpufloat")}).code, 0);
-  expect_refusal({"run", scene, "--engine", "gpu", "--precision", "float", "--gpus", "2"},
-                 scene + ":4:1: a rule of text runs on one GPU\n   4 | [rule]\n     | ^\n  hint: --gpus 1\n");
+  const Trace one = run("one", {scene, "--engine", "gpu", "--precision", "float"}),
+              three = run("three", {scene, "--engine", "gpu", "--precision", "float", "--gpus", "3"});
+  EXPECT_EQ(three.bodies[2].x, one.bodies[2].x);
+  EXPECT_EQ(three.bodies[2].v, one.bodies[2].v);
+  EXPECT_EQ(three.bodies[2].shown, one.bodies[2].shown);
 }
 
 TEST_F(GpuProgram, OfARuleOfTextHasGoldensBitsOnSeveralDevices) {

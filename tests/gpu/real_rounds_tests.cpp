@@ -13,28 +13,14 @@
 #include "model/program/program_errors.h"
 #include "model/real/real_engine.h"
 #include "model/rules/rounds_rule.h"
-#include "model/run/start.h"
 #include "tests/gpu/host_compiler.h"
+#include "tests/gpu/rule_scenes.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
 
-const std::string kRules = CUBOCT_SOURCE_DIR "/scenes/rules/";
 constexpr const char* kNames[] = {"heat", "glass", "plastic", "copper", "langevin", "dpd"};
-
-// Of several stages the first.
-Scene rule_scene(const std::string& name) {
-  const std::string file = kRules + name + ".toml";
-  const std::vector<StageName> stages = stages_of(file);
-  return read_scene(file, {.stage = stages.empty() ? "" : stages.front().name});
-}
-
-Body begin_of(const Scene& scene) {
-  Body body = with_bonds(scene.rule, scene.body, scene.body);
-  if (std::ranges::any_of(scene.rule.types, &ParticleType::pd)) body.u.assign(body.size(), Vec3::Zero());
-  return body;
-}
 
 // The device and the reference from one start, and the bounds of what parts them.
 struct Beside {
@@ -235,10 +221,6 @@ TEST(RealRounds, RefusesWhatItCannotDo) {
   EXPECT_EQ(refused_with<InputError>([&] { made({}); }),
             "a rule of text in floats is compiled for the device: no library libnvrtc.so.0\n"
             "  hint: the package nvidia-cuda-nvrtc has CUDA's compiler; --precision fixed needs none");
-  EXPECT_EQ(refused_with<InputError>([&] {
-              made({.devices = {0, 0}});
-            }),
-            "a rule of text runs on one GPU\n  hint: --gpus 1");
 }
 
 // (a + b c)/d of sizes that no float holds: 1e-30, 1e-50, 1e20 and 1e-40.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A rule that is text in floats or doubles on one GPU: the graphs that the reference runs, a thread for each
-// particle. Positions are integers, so that a step adds to them exactly.
+// A rule that is text in floats or doubles on GPUs: the graphs that the reference runs, a thread for each
+// particle. Positions are integers, so that a step adds to them exactly. No bit depends on how many devices
+// share a scene.
 #pragma once
 
 #include <memory>
@@ -46,8 +47,7 @@ class TableEnds : public std::runtime_error {
 
 // `body`: with Body::bonds, and with u where a type is held by force. `doubles`: else floats. `compile` as of
 // make_rounds_engine: nothing is interpreted. InputError where it fails, or the rule needs more than a thread
-// has, or several devices are asked for; std::runtime_error where CUDA fails. Keeps a reference to the rule,
-// which is text.
+// has; std::runtime_error where CUDA fails. Keeps a reference to the rule, which is text.
 std::unique_ptr<RealRounds> make_real_rounds(const Rule& rule, const Body& body, const Periodic& periodic,
                                              bool doubles, const Options& options,
                                              const CompileRounds& compile, const Memory& memory = {});

@@ -123,10 +123,21 @@ struct RealFrame {
   int64_t time;     // of noise
   uint32_t number;  // of the step in its batch, from 1
   RealControl* control;
+  RealControl* const* others;  // of the other devices
+  int other_count;
 
   CUBOCT_DEVICE bool idle() const {
     // A step that fails runs to its end, so that all of it is told whatever the order of threads.
     return control->lost < number || control->beyond < number || control->old < number;
+  }
+  // That this step is the first one so: to all devices.
+  CUBOCT_DEVICE void tell(uint32_t RealControl::*what) const {
+    atomic_min(&(control->*what), number);
+    for (int k = 0; k < other_count; ++k) atomic_min(&(others[k]->*what), number);
+  }
+  CUBOCT_DEVICE void tell_near_stale() const {
+    control->near_stale[number + 1] = 1;
+    for (int k = 0; k < other_count; ++k) others[k]->near_stale[number + 1] = 1;
   }
   CUBOCT_DEVICE Real made() const { return force[0] == nullptr ? Real(1) : Real(0); }
   CUBOCT_DEVICE Real noise(int64_t stream, uint32_t a, uint32_t b) const {
@@ -230,12 +241,12 @@ struct RealStep {
       meet_near(i, own, sums, fits);
     Real force[3] = {0, 0, 0};
     Graphs::finish(at, i, sums, force, fits);
-    if (!fits) atomic_min(&at.control->beyond, at.number);
+    if (!fits) at.tell(&RealControl::beyond);
     if constexpr (Graphs::kMoves) {
       if (at.force[0] != nullptr) {
         for (int a = 0; a < 3; ++a) at.force[a][i] = force[a];
       } else if (!move(i, force)) {
-        atomic_min(&at.control->lost, at.number);
+        at.tell(&RealControl::lost);
       }
     }
   }
@@ -312,8 +323,8 @@ struct RealStep {
     at.to_v[i] = v;
     at.to_place[i] = place;
     if constexpr (!Graphs::kBonded) {
-      if (at.moved2(at.listed[i], place) > at.allowed2) atomic_min(&at.control->old, at.number);
-      if (at.moved2(at.near_listed[i], place) > at.near_allowed2) at.control->near_stale[at.number + 1] = 1;
+      if (at.moved2(at.listed[i], place) > at.allowed2) at.tell(&RealControl::old);
+      if (at.moved2(at.near_listed[i], place) > at.near_allowed2) at.tell_near_stale();
     }
     return sound;
   }

@@ -3,6 +3,7 @@
 // bin particles stand by id, so that no order of threads is in a sum: a run repeats to the bit.
 #pragma once
 
+#include "emu/gpu/rounds/real_rounds_halo.h"
 #include "emu/gpu/rounds/real_rounds_kernel.h"
 
 namespace cuboct::gpu {
@@ -30,11 +31,18 @@ struct RealBins {
   }
 };
 
+// Of several slabs that exchange particles those that another one owns are not counted.
 struct RealSettle {
   RealBins bins;
+  RealCut cut;
+  int self;  // -1: all are counted
   const int64_t* x[3];
   uint32_t *bin, *count;
   CUBOCT_DEVICE void operator()(uint32_t i) const {
+    if (self >= 0 && cut.owner(cut.along(x[cut.axis][i])) != self) {
+      bin[i] = kRealNoStep;
+      return;
+    }
     bin[i] = bins.of(x, i);
     atomic_add(count + bin[i], 1u);
   }
@@ -91,6 +99,7 @@ struct RealMakeList {
   Real unit[3];  // of a place
   Real reach2;
   const uint32_t *first, *count;
+  const uint32_t* members;  // of bins, one after the other; null: all particles in their order
   uint32_t *entries, *counts;
   uint32_t width;
   size_t stride;
@@ -124,7 +133,8 @@ struct RealMakeList {
           }
           if (!there) continue;
           const uint32_t at = bins.of(bin), end = first[at] + count[at];
-          for (uint32_t j = first[at]; j < end; ++j) {
+          for (uint32_t k = first[at]; k < end; ++k) {
+            const uint32_t j = members != nullptr ? members[k] : k;
             if (j == i) continue;
             Real square = 0;
             for (int a = 0; a < 3; ++a) {
