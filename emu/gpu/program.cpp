@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <csignal>
 #include <optional>
 
 #include "emu/gpu/bench/power.h"
@@ -122,6 +123,10 @@ class GpuProgram : public EngineProgram {
                "How a rule of text runs: interpreted, or automatic: compiled where CUDA's compiler is found")
         .one_of({"automatic", "interpreted"})
         .show_default();
+    app.option("--pause-after", pause_after_,
+               "End after so many steps of this run as an interrupt ends it: with --checkpoint the next one "
+               "goes on from there",
+               "N");
     app.flag("--list", list_, "Print the devices, and no more");
   }
 
@@ -145,6 +150,7 @@ class GpuProgram : public EngineProgram {
   std::string start_, precision_ = "fixed", rule_code_ = "automatic";
   GpuChoice choice_;
   int gpus_ = 0, repeats_ = 0;
+  uint64_t pause_after_ = 0;
   double seconds_ = 0.3;
   bool joules_ = false, list_ = false, devices_given_ = false;
   std::vector<Device> found_;
@@ -167,6 +173,10 @@ bool GpuProgram::prepare(ProgramOptions& options) {
     throw InputError("--hash-every goes with --precision fixed", "states in real numbers have no hash");
   if (options.run.forces && !options.run.checkpoint.path.empty())
     throw InputError("--forces goes without --checkpoint", "a checkpoint's frames hold no forces");
+  if (pause_after_ > 0) {
+    if (options.run.checkpoint.path.empty()) throw InputError("--pause-after goes with --checkpoint FILE");
+    options.run.checkpoint.every_steps = pause_after_;  // a batch ends there
+  }
   choice_.arithmetic = arithmetic_of(precision_);
   choice_.interpret = rule_code_ == "interpreted";
   if (choice_.interpret && precision_ != "fixed")
@@ -181,6 +191,12 @@ EngineKind GpuProgram::kind(Scene& scene, const Plan& plan, const ProgramOptions
     meter_.emplace(found_, plan.particles);
     choice_.hooks = meter_->hooks();
   }
+  if (pause_after_ > 0)
+    choice_.hooks.did = [this, did = choice_.hooks.did](uint64_t steps) {
+      if (did) did(steps);
+      if (pause_after_ > 0 && steps >= pause_after_) std::raise(SIGTERM);
+      pause_after_ -= std::min(steps, pause_after_);
+    };
   const auto finish = choice_.hooks.finish;
   choice_.hooks.finish = [this, finish](cuboct::Counters& counters, Notes& notes) {
     if (finish) finish(counters, notes);

@@ -35,9 +35,7 @@ std::unique_ptr<TextRun> TextRun::make(const Scene& scene, double cell_edge, con
   };
   if (from == nullptr) return made(scene.body, {});
   const EngineMemory& kept = from->head().engine;
-  if (kept.own.empty() || kept.counters.size() != 2 ||
-      kept.counters[1] != static_cast<uint64_t>(choice.arithmetic))
-    refuse_another(*from);
+  if (kept.own.empty() || kept.counters[1] != static_cast<uint64_t>(choice.arithmetic)) refuse_another(*from);
   try {
     return made(cuboct::saved_body(*from, scene.rule, scene.body, Precision::float64),
                 {from->head().step, kept.own});

@@ -467,6 +467,34 @@ TEST_F(GpuProgram, RunsARuleOfTextInRealNumbers) {
   EXPECT_EQ(three.bodies[2].shown, one.bodies[2].shown);
 }
 
+// As `cuboct` in Python steps it: each run ends where it is told to, and the next one goes on from there.
+TEST_F(GpuProgram, PausesAndGoesOn) {
+  const std::string scene = bench_.path("morse.toml"), kept = bench_.path("kept"), out = bench_.path("a.h5");
+  std::ofstream(scene) << kMorse;
+  const std::string words = fmt::format(
+      "{} --precision float --out {} --hash-every 0 --frames 0 --steps 40 --checkpoint {}", scene, out, kept);
+  const Answer first = program(words + " --pause-after 7");
+  EXPECT_EQ(first.code, 1) << first.err;
+  EXPECT_NE(first.out.find("interrupted after step 7; the same command with --resume goes on"),
+            std::string::npos)
+      << first.out;
+  EXPECT_EQ(program(words + " --pause-after 11 --resume").code, 1);
+  const Trace whole = run("whole", {scene, "--engine", "gpu", "--precision", "float", "--steps", "18"}),
+              parts = read_trace(out);
+  EXPECT_EQ(parts.bodies.back().step, 18u);
+  EXPECT_EQ(parts.bodies.back().x, whole.bodies.back().x);
+  EXPECT_EQ(parts.bodies.back().v, whole.bodies.back().v);
+  std::string doubles = words;
+  const Answer other = program(doubles.replace(doubles.find("float"), 5, "double") + " --resume");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.err.find("was made with another engine or --precision"), std::string::npos) << other.err;
+  EXPECT_EQ(program(words + " --pause-after 30 --resume").code, 0);
+  EXPECT_FALSE(std::filesystem::exists(kept));
+  const Answer refused = program(fmt::format("{} --out {} --pause-after 3", scene, out));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.err, "--pause-after goes with --checkpoint FILE\n");
+}
+
 TEST_F(GpuProgram, OfARuleOfTextHasGoldensBitsOnSeveralDevices) {
   Answer answer = bench_.cuboct(
       {"crosscheck", "scenes/rules/heat.toml", "--steps", "20", "--engines", "golden,gpu", "--gpus", "3"});
