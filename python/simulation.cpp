@@ -22,6 +22,7 @@
 #include "python/catch_interrupt.h"
 #include "python/program_engine.h"
 #include "python/program_integers.h"
+#include "python/program_reals.h"
 
 namespace cuboct::python {
 namespace {
@@ -86,10 +87,6 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   real_ = options.is_real(engine_name_);
   text_ = loaded.setup.plan.program != nullptr;
   program_ = engine_row(engine_name_).here == Here::none || options.ranks > 1;
-  // Its bits depend on more than the particles.
-  if (program_ && real_)
-    throw InputError(fmt::format("the {} engine in real numbers cannot be stepped", engine_name_),
-                     "with precision=\"fixed\" it can; cuboct.run runs it whole");
   scene_ = std::move(loaded.scene);
   setup_ = std::move(loaded.setup);
   probe_every_ = whole_steps(scene_, probe_every.value_or(scene_.probe_every));
@@ -117,6 +114,8 @@ void Simulation::make_engine() {
   const Here here = engine_row(engine_name_).here;
   if (text_) {
     engine_ = with_places(scene_, plan.arch, [&] { return engine_of_text(); });
+  } else if (program_ && real_) {
+    engine_ = std::make_unique<ProgramReals>(sources_, engine_name_, options_, scene_, setup_);
   } else if (program_) {
     engine_ = std::make_unique<ProgramEngine>(sources_, engine_name_, options_, scene_, setup_);
   } else if (here == Here::reference) {
@@ -305,6 +304,7 @@ Shown Simulation::shown() {
 
 Fields Simulation::fields() {
   const std::lock_guard lock(mutex_);
+  if (auto* program = dynamic_cast<ProgramReals*>(engine_.get())) return program->fields();
   auto* rounds = dynamic_cast<RoundsRun*>(engine_.get());
   if (rounds == nullptr) return {};
   return rounds->shown();

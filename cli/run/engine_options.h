@@ -26,7 +26,8 @@ struct EngineOptions {
   uint64_t hash_every = 0;
   bool hashes_given = false, cycles = false, joules = false, resume = false;
   std::string checkpoint_every;
-  bool quiet = false;  // programs of engines say nothing, and what they would is an error's text
+  uint64_t pause_after = 0;  // steps, of a program on devices that goes on later from its checkpoint; 0: none
+  bool quiet = false;        // programs of engines say nothing, and what they would is an error's text
 
   // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout, --rule-code
   void add_machines(Command& command);

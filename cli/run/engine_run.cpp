@@ -33,6 +33,7 @@ std::vector<std::string> own_arguments(const EngineRow& row, const Input& input,
   add(!options.devices.empty() && row.devices,
       {"--devices", fmt::format("{}", fmt::join(options.devices, ","))});
   add(options.joules && row.devices, {"--joules"});
+  add(options.pause_after > 0 && row.devices, {"--pause-after", std::to_string(options.pause_after)});
   add(std::ranges::find(row.rule_codes, options.rule_code) != row.rule_codes.end(),
       {"--rule-code", options.rule_code});
   add(row.port, {"--port", options.port});

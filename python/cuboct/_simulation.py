@@ -68,14 +68,14 @@ class Simulation:
     `start` may also be the directory of `cuboct run --out`. A scene with static loading is at rest after each load step; between two of
     them a step moves nothing.
 
-    "systemc", "rtl", "fpga", "gpu" with the fixed rule, and "lattice" with `ranks`, are programs. A call of `step` runs the program once, and once
+    "systemc", "rtl", "fpga", "gpu", and "lattice" with `ranks`, are programs. A call of `step` runs the program once, and once
     more after each reading of the probes; each run begins with the state reached so far, and the bits are those of one whole run.
 
     Arrays are copies, by particle id. All quantities are in SI. Long calls let other threads run. Ctrl-C ends one after a whole step
     with KeyboardInterrupt; the simulation then goes on from that step.
 
     `arch`: the machine, as a `cuboct.Arch`, a dict or a path. `threads`: as many as suit the scene, where None. `precision` ("double" or
-    "float") and `integrator` ("euler" or "verlet") are of the reference. `probe_every`: steps between two readings of the probes and
+    "float") is of the reference and of "gpu", `integrator` ("euler" or "verlet") of the reference. `probe_every`: steps between two readings of the probes and
     energies, 0 for none; None: the scene's own. `anyway`: though it needs more memory than is free. `ranks`, `gpus`, `devices`, `port`,
     `baud` and `rule_code` are the command's options of that name.
     """
@@ -173,7 +173,7 @@ class Simulation:
 
     @property
     def hash(self) -> str | None:
-        """Of the state, 16 hexadecimal digits: equal in all engines of the fixed rule. None of the reference."""
+        """Of the state, 16 hexadecimal digits: equal in all engines of the fixed rule. None of real numbers."""
         return self._of.hash()
 
     @property

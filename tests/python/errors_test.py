@@ -194,9 +194,6 @@ class Errors(unittest.TestCase):
         block = scene_file("lj_block.toml")
         self.assertEqual(str(self.refused(cuboct.Simulation, block, "latice")),
                          "unknown engine 'latice'\n  hint: did you mean 'lattice'?")  # fmt: skip
-        error = self.refused(cuboct.Simulation, block, "gpu", precision="double")
-        self.assertEqual(error.message, "the gpu engine in real numbers cannot be stepped")
-        self.assertIn("cuboct.run", error.hint)
         self.assertEqual(self.refused(cuboct.Scene.like, "tensoin").hint, "did you mean 'tension'?")
         self.assertEqual(
             self.refused(cuboct.run, block, "reference", integrator="verlt").hint, "did you mean 'verlet'?"

@@ -245,18 +245,16 @@ class Programs(unittest.TestCase):
         self.assertEqual(str(there.exception), str(here.exception))
 
     def test_where_there_is_no_gpu(self):
-        with tempfile.TemporaryDirectory() as folder:
-            cuboct.set_program_directory(folder)
-            try:
-                simulation = cuboct.Simulation(text("heat", steps=10), "gpu")
-                with self.assertRaises(cuboct.InputError) as caught:
-                    simulation.step()
-            finally:
-                cuboct.set_program_directory(PROGRAMS)
-        self.assertEqual(caught.exception.message, "the gpu engine is not built: no program cuboct-gpu beside cuboct")
-        with self.assertRaises(cuboct.InputError) as caught:
-            cuboct.Simulation(text("heat", steps=10), "gpu", precision="float")
-        self.assertEqual(caught.exception.message, "the gpu engine in real numbers cannot be stepped")
+        for precision in ("fixed", "float"):
+            with tempfile.TemporaryDirectory() as folder:
+                cuboct.set_program_directory(folder)
+                try:
+                    simulation = cuboct.Simulation(text("heat", steps=10), "gpu", precision=precision)
+                    with self.assertRaises(cuboct.InputError) as caught:
+                        simulation.step()
+                finally:
+                    cuboct.set_program_directory(PROGRAMS)
+            self.assertEqual(caught.exception.message, "the gpu engine is not built: no program cuboct-gpu beside cuboct")
 
     def test_a_scene_of_its_own_names_files_beside_it(self):
         """A changed scene is a copy elsewhere: its rule file lies where the scene was."""
@@ -265,6 +263,62 @@ class Programs(unittest.TestCase):
         with gpu_on_the_host(self):
             there = cuboct.run(scene, "gpu", steps=3, rule_code="interpreted")
         alike(self, there, cuboct.run(scene, "golden", steps=3))
+
+
+class Reals(unittest.TestCase):
+    """The gpu engine in floats and doubles: its bits depend on its lists too, which its checkpoints have."""
+
+    def steps(self, scene, precision, steps, rtol, **options):
+        """In parts of the program, and as one run of it; energies are the reference's of the same state."""
+        whole = cuboct.run(scene, "gpu", steps=sum(steps), precision=precision, **options)
+        there = cuboct.Simulation(scene, "gpu", precision=precision, probe_every=3, **options)
+        for part in steps:
+            there.step(part)
+        self.assertEqual(there.steps, whole.steps)
+        self.assertEqual(there.positions.tolist(), whole.positions.tolist())
+        self.assertEqual(there.velocities.tolist(), whole.velocities.tolist())
+        self.assertEqual(set(there.fields), set(whole.fields))
+        for name in whole.fields:
+            self.assertEqual(there.fields[name].tolist(), whole.fields[name].tolist(), name)
+        total = whole.curves["energy.total"][-1]
+        self.assertAlmostEqual(there.energies["total"], total, delta=rtol * abs(total))
+        return there
+
+    def test_pieces_are_one_run(self):
+        block = cuboct.Scene.load(scene_file("lj_block.toml"))
+        with gpu_on_the_host(self):
+            heat = self.steps(text("heat"), "float", (2, 4, 1), 1e-5)
+            self.assertLess(heat.fields["T"].max(), 400.001)
+            self.steps(pulled(), "double", (3, 4), 1e-9)
+            self.steps(text("langevin"), "double", (5, 30, 5), 1e-9, gpus=2)
+            self.steps(block, "float", (20, 30, 1), 1e-4)
+            with self.assertRaises(cuboct.InputError) as caught:
+                heat.set_gravity([0, 0, 1])
+            self.assertIn("is a program that reads the scene", caught.exception.message)
+
+    def test_a_run_goes_on_from_one(self):
+        with gpu_on_the_host(self):
+            first = cuboct.Simulation(text("langevin"), "gpu", precision="double", probe_every=0)
+            first.step(4)
+            second = cuboct.Simulation(text("langevin"), "gpu", precision="double", probe_every=0, start=first)
+            self.assertEqual(second.positions.tolist(), first.positions.tolist())
+            second.step(2)
+            self.assertEqual(second.steps, 2)
+            self.assertNotEqual(second.positions.tolist(), first.positions.tolist())
+
+    def test_a_step_that_cannot_be_done(self):
+        scene = text("langevin")
+        scene["velocity"][0]["thermal_energy"] = 1e9
+        with gpu_on_the_host(self):
+            with self.assertRaises(cuboct.RunError) as caught:
+                cuboct.run(scene, "gpu", precision="double")
+            whole = caught.exception
+            simulation = cuboct.Simulation(scene, "gpu", precision="double", probe_every=0)
+            for _ in range(2):
+                with self.assertRaises(cuboct.RunError) as caught:
+                    simulation.run()
+                self.assertEqual((str(caught.exception), caught.exception.step), (str(whole), whole.step))
+                self.assertEqual(simulation.steps, whole.step)
 
 
 class Refusals(unittest.TestCase):
