@@ -158,11 +158,11 @@ TEST(Stage, IsRefusedWithItsPlace) {
             "s.toml:51:8: stage 'a' is there twice");
   const std::string a = "[[stage]]\nname = \"a\"\n";
   EXPECT_EQ(refusal(a + "steps = 9\nplanned_steps = 8\n", "a"),
-            "s.toml:52:17: 'planned_steps' is less than the run's 9 steps");
+            "s.toml:51:17: 'planned_steps' is less than the run's 9 steps");
   EXPECT_EQ(refusal(a + "constraint = [{ name = \"left\", kind = \"held\", region = { shape = \"sphere\", "
                         "radius = 1 } }]\n",
                     "a"),
-            "s.toml:51:26: constraint 'left' is there twice");
+            "s.toml:50:24: constraint 'left' is there twice");
   EXPECT_EQ(refusal(a + "constraint = [{ name = \"lift\", free = true }]\n", "a"),
             "s.toml:50:24: unknown constraint 'lift'");
   EXPECT_EQ(refusal(a + "constraint = [{ name = \"left\", velocity = [1, 0, 0] }]\n", "a"),
