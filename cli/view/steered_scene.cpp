@@ -182,6 +182,11 @@ void SteeredScene::ended(uint64_t done) {
   text_ += text_of(now_, part_, done);
   write_text(path(), text_);
   first_ += done;
+  if (!now_.pull || pull_ || done >= now_.steps) return;
+  // Another change has come in the midst of it: the hand does not let go.
+  pull_ = now_.pull;
+  pull_->steps -= done;
+  pull_->way *= static_cast<double>(pull_->steps) / static_cast<double>(now_.steps);
 }
 
 }  // namespace cuboct

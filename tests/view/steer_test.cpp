@@ -101,41 +101,44 @@ TEST(Steer, AChangeIsAStageOfASceneThatGivesTheSameRun) {
             EXPECT_TRUE(has(none, " 400 ") && has(none, "there is no such particle")) << none;
             EXPECT_TRUE(has(run.post("steer/pull/2000/1e-3/0/0/0/0"), " 400 "));
             EXPECT_TRUE(has(run.post("steer/pull/2000/1e-3/0/0/2e-4/200"), " 204 "));
+          } else {
+            EXPECT_TRUE(has(run.post("steer/gravity/0/0/0"), " 204 "));
           }
-          return part < 2;
+          return part < 3;
         });
       });
   EXPECT_EQ(ran.code, 0) << ran.err;
-  // The first two parts ended before their time, and the third when the hand let go.
+  // The first three parts ended before their time, and the fourth when the hand let go.
   const std::string stages = stages_in(out + "/scene.toml");
-  EXPECT_EQ(count(stages, "[[stage]]"), 4U) << stages;
-  EXPECT_EQ(count(stages, "planned_steps = "), 2U) << stages;
-  EXPECT_EQ(count(stages, "{ name = \"pulled\", velocity = \"[-2.5, 0, 0] m/s\" }"), 3U) << stages;
-  EXPECT_EQ(count(stages, "{ name = \"hand\", kind = \"moved\", velocity = \"[0, 0, "), 1U) << stages;
-  EXPECT_EQ(count(stages, "steps = 200\n"), 1U) << stages;
-  EXPECT_EQ(count(stages, "gravity = \"[0, 0, -9.8100000000000005] m/s^2\"\n"), 3U) << stages;
-  size_t steps = 0;
-  for (int k = 1; k <= 4; ++k) {
+  EXPECT_EQ(count(stages, "[[stage]]"), 5U) << stages;
+  EXPECT_EQ(count(stages, "planned_steps = "), 3U) << stages;
+  EXPECT_EQ(count(stages, "{ name = \"pulled\", velocity = \"[-2.5, 0, 0] m/s\" }"), 4U) << stages;
+  EXPECT_EQ(count(stages, "{ name = \"hand\", kind = \"moved\", velocity = \"[0, 0, "), 2U) << stages;
+  EXPECT_EQ(count(stages, "gravity = \"[0, 0, -9.8100000000000005] m/s^2\"\n"), 2U) << stages;
+  size_t steps = 0, pulled = 0;
+  for (int k = 1; k <= 5; ++k) {
     const Trace trace = read_trace(part(out, k) + "/trace.h5");
     steps += trace.steps();
+    pulled += k == 3 || k == 4 ? trace.steps() : 0;
     EXPECT_EQ(std::string(trace.ended()), "finished") << k;
     EXPECT_TRUE(has(contents(part(out, k) + "/run.toml"), "state = 'finished'")) << k;
   }
   EXPECT_EQ(steps, 1600U);
+  EXPECT_EQ(pulled, 200U);
   EXPECT_TRUE(
-      has(run.news, "\"first\":" + std::to_string(1600 - read_trace(part(out, 4) + "/trace.h5").steps())));
+      has(run.news, "\"first\":" + std::to_string(1600 - read_trace(part(out, 5) + "/trace.h5").steps())));
 
   // What the hand took hold of went its way, and what is far away did not.
   const auto height = [&](int k, size_t particle) {
     return read_left_state(part(out, k) + "/trace.h5").body.x[particle].z();
   };
-  EXPECT_NEAR(height(3, 2000) - height(2, 2000), 2e-4, 1e-9);
-  EXPECT_LT(std::abs(height(3, 0) - height(2, 0)), 2e-5);
+  EXPECT_NEAR(height(4, 2000) - height(2, 2000), 2e-4, 1e-9);
+  EXPECT_LT(std::abs(height(4, 0) - height(2, 0)), 2e-5);
 
   const Answer rerun =
       bench.cuboct({"run", out + "/scene.toml", "--frame-every", "40", "--quiet", "--out", again});
   EXPECT_EQ(rerun.code, 0) << rerun.err;
-  expect_the_same_run(out, again, 4);
+  expect_the_same_run(out, again, 5);
 }
 
 // Without a change the run is that of the scene.
