@@ -43,6 +43,7 @@ auto unless_interrupted(Work work) {
 RunAsked for_scene(RunAsked asked, const Scene& scene) {
   if (asked.engine.empty()) asked.engine = engine_for(scene);
   asked.options.check({asked.engine}, {});
+  asked.options.anyway = asked.anyway;
   asked.steps = whole_steps(scene, asked.steps.value_or(scene.steps));
   if (asked.keep_every) asked.keep_every = whole_steps(scene, *asked.keep_every);
   return asked;

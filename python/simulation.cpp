@@ -82,7 +82,8 @@ Simulation::Simulation(const Sources& sources, const std::string& engine, const 
   options.check({engine_name_}, {});
   check_runs(loaded.scene, loaded.setup.plan.arch, engine_name_);
   options.check(loaded.setup.plan);
-  check_workers(options.threads, options.ranks, loaded.setup.plan);
+  options_.anyway = anyway;
+  check_workers(options.threads, options.ranks, anyway, loaded.setup.plan);
   if (!anyway) check_size(loaded, engine_name_, options);
   real_ = options.is_real(engine_name_);
   text_ = loaded.setup.plan.program != nullptr;

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/front.h"
 #include "cli/programs.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/json.h"
@@ -27,6 +28,7 @@ struct Options {
   Answer answer;
   int threads = 0;
   BenchLength length;
+  bool anyway = false;
 };
 
 // Nobody waits for a row that nobody reads.
@@ -40,6 +42,7 @@ std::function<void(benchmark::State&)> unless_lost(std::function<void(benchmark:
 }
 
 int bench(const Options& options) {
+  check_workers("--threads", options.threads, options.anyway);
   const std::vector<Bench> list = benches(options.length, options.threads);
   const Answer& answer = options.answer;
   if (options.list) {
@@ -65,6 +68,10 @@ int bench(const Options& options) {
     throw InputError(fmt::format("no benchmark '{}'", options.name),
                      near.empty() ? "'cuboct bench --list' names them" : near);
   }
+  check_time(fmt::format("{} benchmark{} with --repeats {} --seconds {:g}", chosen.size(),
+                         chosen.size() == 1 ? "" : "s", options.length.repeats, options.length.seconds),
+             static_cast<double>(chosen.size()) * options.length.repeats * options.length.seconds,
+             "fewer repeats", options.anyway);
   answer.say("# {}\n", machine());
   std::vector<std::string> notes;
   if (std::any_of(chosen.begin(), chosen.end(), [](const Bench* entry) { return entry->gpu; }))
@@ -116,6 +123,7 @@ void add_bench(Command& app, int& exit_code) {
   command.option("--seconds", options->length.seconds, "length of a repeat, but where steps are given", "T")
       .range(1e-3, 1e4)
       .show_default();
+  add_anyway_to(command, options->anyway);
 }
 
 }  // namespace cuboct

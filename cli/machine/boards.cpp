@@ -12,6 +12,7 @@
 #include "cli/machine/technologies.h"
 #include "cli/programs.h"
 #include "cli/run/estimate.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/interrupt.h"
 #include "model/base/output.h"
@@ -28,7 +29,7 @@ struct BoardsOptions {
   uint64_t most = UINT64_MAX;
   std::vector<int32_t> box;  // x, y, z: this one alone; empty: what the search finds
   std::optional<uint64_t> steps;
-  bool json = false;
+  bool json = false, anyway = false;
 };
 
 DeviceLinkKind link_of(const BoardsOptions& options) {
@@ -130,7 +131,8 @@ int boards(const BoardsOptions& options) {
   if (options.steps == uint64_t{0}) throw InputError("--steps: no step, no cycles", "--steps 20");
   const Loaded loaded = load_machine(options.input);
   const Plan& plan = loaded.setup.plan;
-  check_held(loaded.scene, plan);
+  check_held(loaded.scene, plan, options.anyway);
+  if (options.steps) check_counted("--steps", "lattice", loaded.scene, plan, *options.steps, options.anyway);
   check_machine(loaded);
   if (plan.arch.boards.several())
     plan.arch.places.fail({"boards"}, "the machine is on several devices already",
@@ -194,6 +196,7 @@ void add_boards(Command& app, int& exit_code) {
   command.option("--steps", options->steps, "steps to count; default: 20, fewer if very many particles", "N")
       .check(whole_number);
   command.option("--write", options->write, "writes the arch with [boards] of the fastest", "FILE");
+  add_anyway_to(command, options->anyway);
   command.flag("--json", options->json, "print one JSON document instead of lines for people");
 }
 

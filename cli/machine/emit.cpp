@@ -7,6 +7,7 @@
 #include "cli/programs.h"
 #include "cli/run/estimate.h"
 #include "cli/run/stages.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "hw/rtl/rtl_emit.h"
 #include "hw/rtl/rtl_prefix.h"
@@ -49,15 +50,27 @@ struct EmitOptions {
   Input input;
   std::string out, fit;
   Emission emission{.vector_steps = 8};
-  bool fixed_velocities = false, unchecked = false;
+  bool fixed_velocities = false, unchecked = false, anyway = false;
   Answer answer;
 };
+
+// What the project's bench compares with: a line of each particle after each step, which is made in memory.
+void check_vectors(const Scene& scene, const Plan& plan, const EmitOptions& options) {
+  constexpr double kBitsOfDigit = 4, kBeside = 10;  // digits: of the slot, of the step, the line's end
+  const auto steps = static_cast<double>(options.emission.vector_steps);
+  const double line = plan.words.particle_bits / kBitsOfDigit + kBeside;
+  check_memory(fmt::format("--vector-steps {}", options.emission.vector_steps),
+               2 * steps * plan.particles * line,
+               fmt::format("--vector-steps {}", EmitOptions().emission.vector_steps), options.anyway);
+  check_counted("--vector-steps", "golden", scene, plan, options.emission.vector_steps, options.anyway);
+}
 
 Items emit_one(const EmitOptions& options) {
   const Loaded loaded = load_machine(options.input);
   refuse_static(loaded.scene, "hardware");
   const Plan& plan = loaded.setup.plan;
-  check_held(loaded.scene, plan);
+  check_held(loaded.scene, plan, options.anyway);
+  check_vectors(loaded.scene, plan, options);
   std::optional<CountedCycles> counted;
   with_places(loaded.scene, plan.arch, [&] {
     check_emit_directory(options.out);
@@ -157,6 +170,7 @@ void add_emit(Command& app, int& exit_code) {
   command.option(
       "--prefix", options->emission.prefix,
       "begin every name of modules, packages and files with NAME_: two machines stand in one design", "NAME");
+  add_anyway_to(command, options->anyway);
   options->answer.add_to(command);
 }
 

@@ -14,6 +14,7 @@
 #include "cli/programs.h"
 #include "cli/run/estimate.h"
 #include "hw/cost/memory_traffic.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/interrupt.h"
 #include "model/base/spelling.h"
@@ -26,7 +27,7 @@ struct EnergyOptions {
   std::string beside, link, clock = "100 MHz";
   std::vector<std::string> technologies{"cmos45", "cmos7"};
   std::optional<uint64_t> steps;  // empty: as many as take some seconds
-  bool json = false;
+  bool json = false, anyway = false;
 };
 
 EnergyMachine machine_of(const EnergyOptions& options, const std::string& arch, double clock,
@@ -35,7 +36,8 @@ EnergyMachine machine_of(const EnergyOptions& options, const std::string& arch, 
   input.arch = arch;
   const Loaded loaded = load_machine(input);
   const Plan& plan = loaded.setup.plan;
-  check_held(loaded.scene, plan);
+  check_held(loaded.scene, plan, options.anyway);
+  if (options.steps) check_counted("--steps", "lattice", loaded.scene, plan, *options.steps, options.anyway);
   check_machine(loaded);
   constexpr uint64_t kMostWork = 20'000'000;  // particles times steps
   const uint64_t affordable = std::max<uint64_t>(1, kMostWork / std::max<uint64_t>(1, plan.particles));
@@ -99,6 +101,7 @@ void add_energy(Command& app, int& exit_code) {
       .option("--steps", options->steps,
               fmt::format("that are counted; default: {}, fewer of very many particles", kCountedSteps), "N")
       .check(whole_number);
+  add_anyway_to(command, options->anyway);
   command.flag("--json", options->json, "print one JSON document instead of lines for people");
 }
 

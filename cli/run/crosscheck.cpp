@@ -211,6 +211,20 @@ int EngineComparison::compare_all() {
   return end("all stopped", 1);
 }
 
+// Of each engine by itself, as the engines run one after the other.
+void check_sizes(const CrosscheckOptions& options, const Loaded& loaded, uint64_t steps) {
+  if (options.choice.anyway) return;
+  RunSize size = run_size(loaded.scene, steps);
+  size.probe_every = 0;
+  size.threads = options.choice.threads;
+  size.ranks = options.choice.ranks;
+  for (const std::string& engine : options.engines) {
+    size.engine = engine;
+    size.hash_every = engine_row(engine).hash_every;
+    check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), "");
+  }
+}
+
 struct Crossed {
   int code = 0;
   bool reached = false;
@@ -225,7 +239,7 @@ Crossed cross_once(CrosscheckOptions options, const std::string& leave) {
   check_engines(options);
   loaded.setup.plan = shared_plan_of(loaded.scene, arch, options.engines);
   const bool text = loaded.setup.plan.program != nullptr;
-  check_held(loaded.scene, loaded.setup.plan);
+  check_held(loaded.scene, loaded.setup.plan, options.choice.anyway);
   const Scratch scratch;
   std::optional<DirectoryLock> lock;
   std::string directory = scratch.path("");
@@ -236,6 +250,7 @@ Crossed cross_once(CrosscheckOptions options, const std::string& leave) {
   }
   RunRequest request;
   request.steps = options.steps_given ? options.steps : loaded.scene.steps;
+  check_sizes(options, loaded, request.steps);
   if (loaded.scene.until) request.until = true, request.probes = probe_steps_of(loaded.scene, request.steps);
   if (!leave.empty()) request.frames = {request.steps};
   std::optional<RunState> last;  // of a rule of text, whose fields no State of a trace has

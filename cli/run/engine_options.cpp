@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "hw/engine/engines.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/spelling.h"
@@ -50,6 +51,7 @@ void EngineOptions::add_machines(Command& command) {
           "CUDA's "
           "compiler is found")
       .one_of({"automatic", "interpreted", "compiled"});
+  add_anyway_to(command, anyway);
 }
 
 void EngineOptions::add_numbers(Command& command) {

@@ -27,9 +27,10 @@ struct EngineOptions {
   bool hashes_given = false, cycles = false, joules = false, resume = false;
   std::string checkpoint_every;
   uint64_t pause_after = 0;  // steps, of a program on devices that goes on later from its checkpoint; 0: none
+  bool anyway = false;       // though it asks for more than the machine has
   bool quiet = false;        // programs of engines say nothing, and what they would is an error's text
 
-  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout, --rule-code
+  // --threads, --ranks, --gpus, --devices, --port, --baud, --port-timeout, --rule-code, --anyway
   void add_machines(Command& command);
   void add_numbers(Command& command);  // --precision, --integrator
   void add_run(Command& command);      // what is of `run` alone

@@ -82,7 +82,7 @@ EngineRun::EngineRun(const std::string& engine, const Input& input, const Loaded
   const EngineRow& row = engine_row(engine);
   check_runs(loaded.scene, loaded.setup.plan.arch, engine);
   options.check(loaded.setup.plan);
-  if (!row.ranks.empty()) check_workers(options.threads, options.ranks, loaded.setup.plan);
+  if (row.cost.threads) check_workers(options.threads, options.ranks, options.anyway, loaded.setup.plan);
   if (!options.checkpoint_every.empty()) read_interval(options.checkpoint_every, request.checkpoint);
   request.checkpoint.resume = options.resume;
   const std::string program = program_of(row, options);

@@ -11,6 +11,7 @@
 #include "cli/run/text_cost.h"
 #include "hw/engine/engines.h"
 #include "hw/engine/scene_engine.h"
+#include "hw/program/bounds.h"
 #include "model/analysis/synopsis.h"
 #include "model/base/resources.h"
 #include "model/rules/rounds_rule.h"
@@ -210,7 +211,14 @@ Estimate estimate(const Scene& scene, const Plan& plan, const RunSize& size) {
   e.frames = count_every(size.frame_every, size.steps);
   e.frame =
       kPixel * pixels_of(scene, extent, size.raster) + (size.states ? particles * (kXyz + kVtk + kState) : 0);
-  e.disk = e.frames * e.frame + e.hashes + e.samples + e.spans / sizeof(PhaseSpan) * kSpan;
+  const double rest = e.hashes + e.samples + e.spans / sizeof(PhaseSpan) * kSpan;
+  // The journal of checkpoints has each frame in whole words, and the rest; a checkpoint is there twice while
+  // it is written.
+  if (size.checkpoints) {
+    constexpr double kWords = 80;  // of a particle
+    e.checkpoints = rest + particles * kWords * (2 + e.frames);
+  }
+  e.disk = e.frames * e.frame + rest + e.checkpoints;
   return e;
 }
 
@@ -253,50 +261,88 @@ void check_lists(const Scene& scene, const RunSize& size, bool frames_given) {
   refuse(false, gives(scene, "probe_every") ? "probe_every" : "energy_every", size.probe_every);
 }
 
-void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, const std::string& out) {
+namespace {
+
+void check_run_memory(const Scene& scene, const RunSize& size, const Estimate& e) {
   const double free = static_cast<double>(free_memory());
-  if (e.memory > free) {
-    const std::string text =
-        fmt::format("the run takes about {} of memory: {} are free", in_bytes(e.memory), in_bytes(free));
-    const double rest = e.memory - e.hashes - e.spans - e.samples;
-    const double left = std::max(0.0, free - rest);
-    const std::string anyway = "; --anyway runs it all the same";
-    if (rest < free && e.spans >= std::max(e.hashes, e.samples))
-      throw InputError(
-          fmt::format("{}, {} of it for the cycles of {} steps", text, in_bytes(e.spans), size.steps),
-          fmt::format("--steps {:.0f}{}", std::floor(0.9 * static_cast<double>(size.steps) * left / e.spans),
-                      anyway));
-    if (rest < free && e.hashes >= e.samples)
-      throw InputError(fmt::format("{}, {} of it for a hash every {} steps of {}", text, in_bytes(e.hashes),
-                                   size.hash_every, size.steps),
-                       fmt::format("--hash-every {}{}",
-                                   round_interval(size.steps, 0.5 * left / sizeof(uint64_t)), anyway));
-    if (rest < free)
-      scene.places.fail({"run.probe_every", "run.duration", "run.steps"},
-                        fmt::format("{}, {} of it for curves", text, in_bytes(e.samples)),
-                        "a larger probe_every" + anyway);
-    scene.places.fail(kOfSize, text,
-                      (size.ranks > 1 ? std::string("fewer ranks, ") : std::string()) +
-                          "a larger pitch or a smaller geometry" + anyway);
-  }
-  const double disk = static_cast<double>(free_disk(out.empty() ? "." : out));
-  if (out.empty() || e.disk <= disk) return;
+  if (e.memory <= free) return;
   const std::string text =
-      fmt::format("the run takes about {} of disk, {:.6g} frames of {} each: {} are free in {}",
-                  in_bytes(e.disk), e.frames, in_bytes(e.frame), in_bytes(disk), out);
-  const double most = 0.9 * (disk - (e.disk - e.frames * e.frame)) / e.frame;
-  const std::string hint =
-      most >= 3 && size.steps > 2
-          ? fmt::format("{} {}", size.frame_every == scene.frame_every ? "frame_every =" : "--frame-every",
-                        round_interval(size.steps, most))
-          : std::string("--no-states keeps pictures alone");
-  // The command line's own wish has no place in the file.
-  if (size.frame_every != scene.frame_every) throw InputError(text, hint + "; --anyway runs it all the same");
-  scene.places.fail({"run.frame_every", "packing.pitch", "geometry", "box"}, text,
-                    hint + "; --anyway runs it all the same");
+      fmt::format("the run takes about {} of memory: {} are free", in_bytes(e.memory), in_bytes(free));
+  const double rest = e.memory - e.hashes - e.spans - e.samples;
+  const double left = std::max(0.0, free - rest);
+  if (rest < free && e.spans >= std::max(e.hashes, e.samples))
+    throw InputError(
+        fmt::format("{}, {} of it for the cycles of {} steps", text, in_bytes(e.spans), size.steps),
+        fmt::format("--steps {:.0f}{}", std::floor(0.9 * static_cast<double>(size.steps) * left / e.spans),
+                    kAnyway));
+  if (rest < free && e.hashes >= e.samples)
+    throw InputError(
+        fmt::format("{}, {} of it for a hash every {} steps of {}", text, in_bytes(e.hashes), size.hash_every,
+                    size.steps),
+        fmt::format("--hash-every {}{}", round_interval(size.steps, 0.5 * left / sizeof(uint64_t)), kAnyway));
+  if (rest < free)
+    scene.places.fail({"run.probe_every", "run.duration", "run.steps"},
+                      fmt::format("{}, {} of it for curves", text, in_bytes(e.samples)),
+                      std::string("a larger probe_every") + kAnyway);
+  scene.places.fail(kOfSize, text,
+                    (size.ranks > 1 ? std::string("fewer ranks, ") : std::string()) +
+                        "a larger pitch or a smaller geometry" + kAnyway);
 }
 
-void check_held(const Scene& scene, const Plan& plan) {
+void check_run_disk(const Scene& scene, const RunSize& size, const Estimate& e, const std::string& out) {
+  const double disk = static_cast<double>(free_disk(out.empty() ? "." : out));
+  if (out.empty() || e.disk <= disk) return;
+  const std::string checkpoints =
+      e.checkpoints > 0 ? fmt::format(" and {} for checkpoints", in_bytes(e.checkpoints)) : std::string();
+  const std::string text =
+      fmt::format("the run takes about {} of disk, {:.6g} frames of {} each{}: {} are free in {}",
+                  in_bytes(e.disk), e.frames, in_bytes(e.frame), checkpoints, in_bytes(disk), out);
+  const double most = 0.9 * (disk - (e.disk - e.frames * e.frame)) / e.frame;
+  const std::string hint =
+      (most >= 3 && size.steps > 2
+           ? fmt::format("{} {}", size.frame_every == scene.frame_every ? "frame_every =" : "--frame-every",
+                         round_interval(size.steps, most))
+           : std::string("--no-states keeps pictures alone")) +
+      kAnyway;
+  // The command line's own wish has no place in the file.
+  if (size.frame_every != scene.frame_every) throw InputError(text, hint);
+  scene.places.fail({"run.frame_every", "packing.pitch", "geometry", "box"}, text, hint);
+}
+
+void check_run_time(const Scene& scene, const RunSize& size, const Estimate& e) {
+  if (e.seconds <= kMostSeconds) return;
+  const std::string text =
+      fmt::format("the run takes about {}: {:.3g} particle-steps on {} thread{}", long_time(e.seconds),
+                  e.particle_steps, e.threads, e.threads == 1 ? "" : "s");
+  const std::string hint =
+      fmt::format("{:.0f} steps would take a day{}",
+                  std::max(1.0, std::floor(86400 * static_cast<double>(size.steps) / e.seconds)), kAnyway);
+  if (size.steps != scene.steps) throw InputError(text, hint);
+  scene.places.fail({"run.duration", "run.steps"}, text, hint);
+}
+
+}  // namespace
+
+void check_fits(const Scene& scene, const RunSize& size, const Estimate& e, const std::string& out) {
+  check_run_memory(scene, size, e);
+  check_run_disk(scene, size, e, out);
+  check_run_time(scene, size, e);
+}
+
+void check_counted(const std::string& option, const std::string& engine, const Scene& scene, const Plan& plan,
+                   uint64_t steps, bool anyway) {
+  RunSize size;
+  size.engine = engine, size.steps = steps, size.hash_every = 0;
+  const double seconds = estimate(scene, plan, size).seconds;
+  if (seconds > kMostSeconds)
+    check_time(fmt::format("{} {}", option, steps), seconds,
+               fmt::format("{} {:.0f} takes a day", option,
+                           std::max(1.0, std::floor(86400 * static_cast<double>(steps) / seconds))),
+               anyway);
+}
+
+void check_held(const Scene& scene, const Plan& plan, bool anyway) {
+  if (anyway) return;
   RunSize size;
   size.hash_every = 0;
   const double memory = estimate(scene, plan, size).memory, free = static_cast<double>(free_memory());
@@ -304,25 +350,22 @@ void check_held(const Scene& scene, const Plan& plan) {
     scene.places.fail(
         kOfSize,
         fmt::format("the machine takes about {} of memory: {} are free", in_bytes(memory), in_bytes(free)),
-        "a larger pitch or a smaller geometry");
+        std::string("a larger pitch or a smaller geometry") + kAnyway);
 }
 
-void check_workers(int threads, int ranks, const Plan& plan) {
-  // Some more than cores do no harm, and show that no bit depends on them.
-  constexpr int kPerCore = 4, kAlways = 16;
-  const int cores = usable_cores(), most = std::max(kAlways, kPerCore * cores);
-  const std::string here = fmt::format("this machine has {} core{} to use", cores, cores == 1 ? "" : "s");
-  if (threads > most)
-    throw InputError(fmt::format("--threads {}: {}", threads, here), fmt::format("--threads {}", cores));
+void check_workers(int threads, int ranks, bool anyway, const Plan& plan) {
+  check_workers("--threads", threads, anyway);
+  const int most = most_workers();
   // Under a scheduler of jobs, or with a list of hosts, ranks run elsewhere too.
   const auto set = [](const char* name) { return std::getenv(name) != nullptr; };
-  const bool elsewhere =
-      set("SLURM_JOB_ID") || set("PBS_JOBID") || set("LSB_JOBID") || set("OMPI_MCA_orte_default_hostfile");
+  const bool elsewhere = anyway || set("SLURM_JOB_ID") || set("PBS_JOBID") || set("LSB_JOBID") ||
+                         set("OMPI_MCA_orte_default_hostfile");
   const auto nodes = static_cast<int>(std::min<uint32_t>(plan.nodes(), 1 << 30));  // a rank has whole ones
   if (ranks <= 1 || (ranks <= nodes && (ranks <= most || elsewhere))) return;
   throw InputError(
-      fmt::format("--ranks {}: {}, and the scene {} node{}", ranks, here, nodes, nodes == 1 ? "" : "s"),
-      fmt::format("--ranks {}", std::min(cores, nodes)));
+      fmt::format("--ranks {}: {}, and the scene {} node{}", ranks, cores_text(), nodes,
+                  nodes == 1 ? "" : "s"),
+      fmt::format("--ranks {}{}", std::min(usable_cores(), nodes), ranks <= nodes ? kAnyway : ""));
 }
 
 }  // namespace cuboct

@@ -21,6 +21,7 @@ struct RunSize {
   uint32_t raster = 800;  // pixels along the body
   int threads = 0;        // 0: as many as suit the scene
   int ranks = 1;
+  bool checkpoints = false;
 };
 
 // The scene's run, of `steps` instead of its own.
@@ -39,6 +40,7 @@ struct Estimate {
   double disk = 0;   // bytes that --out takes
   double frame = 0;  // of it, each of the frames
   double frames = 0;
+  double checkpoints = 0;  // and what a run keeps that is to go on
 };
 
 // Particles, cells and steps are counted. Time and bytes per particle are those measured on example scenes:
@@ -52,14 +54,19 @@ void add_estimate(Items& items, const Estimate& estimate);
 void check_lists(const Scene& scene, const RunSize& size, bool frames_given);
 
 // Throws InputError where the run needs more memory than is free, or, into the directory `out` (empty: none),
-// more disk: at the key or option that asks for most of it, with what would do.
+// more disk, or more than kMostSeconds: at the key or option that asks for most of it, with what would do.
 void check_fits(const Scene& scene, const RunSize& size, const Estimate& estimate, const std::string& out);
 
 // Throws InputError, at the key that asks for most, where the particles and cells of the machine take more
 // memory than is free: of commands that run it on the lattice engine for a few steps.
-void check_held(const Scene& scene, const Plan& plan);
+void check_held(const Scene& scene, const Plan& plan, bool anyway);
 
 // Throws InputError where threads (0: not given) or ranks are more than the machine or the scene can use.
-void check_workers(int threads, int ranks, const Plan& plan);
+// `anyway`: of the machine, that is meant; the scene's nodes bound ranks all the same.
+void check_workers(int threads, int ranks, bool anyway, const Plan& plan);
+
+// Throws InputError where so many steps of an engine, asked for by `option`, take more than kMostSeconds.
+void check_counted(const std::string& option, const std::string& engine, const Scene& scene, const Plan& plan,
+                   uint64_t steps, bool anyway);
 
 }  // namespace cuboct

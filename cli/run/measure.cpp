@@ -10,6 +10,7 @@
 #include "cli/run/measure_run.h"
 #include "cli/run/measured_particles.h"
 #include "cli/run/outputs.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/error.h"
 #include "model/base/output.h"
@@ -23,7 +24,7 @@ struct MeasureOptions {
   MeasureAsked asked;
   int threads = 0;
   uint64_t bins = 0;
-  bool bins_given = false;
+  bool bins_given = false, anyway = false;
   Answer answer;
 };
 
@@ -33,6 +34,7 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void measure(const MeasureOptions& options) {
+  check_workers("--threads", options.threads, options.anyway);
   MeasureAsked asked = options.asked;
   const RunRecord record = read_record(options.directory);
   const Trace trace = read_run(options.directory, record);
@@ -112,6 +114,7 @@ void add_measure(Command& app, int& exit_code) {
       "what each particle has, by frames: .csv, .xyz, .xyz.gz, .dump.gz (LAMMPS) or .pvd (ParaView)", "FILE");
   command.option("--out", options->out, "the CSV file; default: to the terminal", "FILE");
   command.option("--threads", options->threads, "default: one per core", "N").range(1, 4096);
+  add_anyway_to(command, options->anyway);
   options->answer.add_to(command);
 }
 

@@ -41,8 +41,8 @@ struct RunOptions {
   bool in_stages = false;  // one run of several, which are summed up together
   Answer answer;
   bool steps_given = false, frames_given = false, formats_given = false, no_watch = false, no_states = false,
-       si = false, raster_given = false, force = false, anyway = false, quiet = false, verbose = false,
-       view = false, opens = true, csv = false;
+       si = false, raster_given = false, force = false, quiet = false, verbose = false, view = false,
+       opens = true, csv = false;
 
   // Of the frames' files.
   std::vector<std::string> formats() const {
@@ -86,7 +86,7 @@ uint64_t rest_of(const RunOptions& options, const Loaded& loaded, uint64_t steps
 // Before the first step: what this machine cannot hold.
 void check_size(const RunOptions& options, const Loaded& loaded, uint64_t steps, uint64_t frame_every) {
   const EngineOptions& engines = options.engines;
-  check_workers(engines.threads, engines.ranks, loaded.setup.plan);
+  check_workers(engines.threads, engines.ranks, engines.anyway, loaded.setup.plan);
   RunSize size = run_size(loaded.scene, steps);
   size.engine = options.engine;
   size.frame_every = frame_every;
@@ -96,8 +96,9 @@ void check_size(const RunOptions& options, const Loaded& loaded, uint64_t steps,
   size.raster = options.raster;
   size.threads = engines.threads;
   size.ranks = engines.ranks;
+  size.checkpoints = engines.keeps_checkpoints();
   check_lists(loaded.scene, size, options.frames_given);
-  if (options.anyway) return;
+  if (engines.anyway) return;
   check_fits(loaded.scene, size, estimate(loaded.scene, loaded.setup.plan, size), options.out);
 }
 
@@ -329,7 +330,6 @@ void add_run(Command& app, int& exit_code) {
   command.flag("--view", options->view,
                "show the run while it goes, as 'cuboct view' does, in a browser where there is a display; "
                "keeps 40 frames unless scene or --frame-every say otherwise, and leaves DIR/report.html");
-  command.flag("--anyway", options->anyway, "run although it needs more memory or disk than is free");
   const Option quiet = command.flag("-q,--quiet", options->quiet,
                                     "nothing on stderr but errors: no table of the run as it goes");
   command.flag("-v,--verbose", options->verbose, "say what runs before it does: engine, plan, reasons")

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/programs.h"
 #include "cli/study/elastic_text.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/analysis/scene_cell.h"
 #include "model/analysis/strained_cell.h"
@@ -29,6 +30,7 @@ struct ElasticOptions {
   bool reduced = false, relaxed = false, json = false;
   double strain = 1e-6;
   int layers = 0, threads = 1;
+  bool anyway = false;
 };
 
 constexpr size_t kMostForElastic = 100000;  // of which the force constants take some 2 GB
@@ -84,6 +86,7 @@ Scene scene_of(const ElasticOptions& options, std::vector<std::string>& left_out
 }
 
 void check(const ElasticOptions& options) {
+  check_workers("--threads", options.threads, options.anyway);
   if (!(options.strain >= 1e-8 && options.strain <= 1e-2))
     throw InputError(fmt::format("--strain: {:g} is not in [1e-8, 0.01]", options.strain));
   if (!options.polar.empty()) {
@@ -112,6 +115,9 @@ ElasticFindings findings_of(const ElasticOptions& options, const Scene& scene) {
     throw InputError(fmt::format("{} particles: 'cuboct elastic' solves for at most {}", start.cell.x.size(),
                                  kMostForElastic),
                      "a smaller box of the same matter has the same constants");
+  check_memory(fmt::format("{} particles", start.cell.x.size()),
+               static_cast<double>(start.cell.x.size()) * 2e9 / kMostForElastic,
+               "a smaller box of the same matter has the same constants", options.anyway);
   out.scene = scene.path;
   out.cell = start.of;
   out.particles = start.cell.x.size();
@@ -215,6 +221,7 @@ void add_elastic(Command& app, int& exit_code) {
   command.option("--polar", options->polar,
                  "draw Young's modulus against direction in the x-y plane (svg, png)", "FILE");
   command.option("--threads", options->threads, "of the simulations; default: 1", "N").range(1, 4096);
+  add_anyway_to(command, options->anyway);
   command.flag("--json", options->json, "print as JSON");
 }
 

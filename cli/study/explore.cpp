@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/answer.h"
 #include "cli/command.h"
 #include "cli/programs.h"
+#include "cli/run/estimate.h"
 #include "cli/study/budget.h"
 #include "cli/study/explore_machines.h"
 #include "cli/study/study_command.h"
+#include "hw/engine/scene_engine.h"
 #include "model/base/json.h"
+#include "model/base/resources.h"
 #include "model/base/text.h"
 #include "study/machines/machine_study.h"
 #include "study/report/page.h"
@@ -23,7 +28,7 @@ struct ExploreOptions {
   std::vector<std::string> add;
   int jobs = 0;
   bool no_speed = false;
-  bool best = false, confirm = false;
+  bool best = false, confirm = false, anyway = false;
   std::string emit;
   Answer answer;
 };
@@ -71,7 +76,28 @@ int explore_machines_of(const ExploreOptions& options) {
                           options.answer);
 }
 
+// Points that are computed at once hold their runs at once; `points` of them, with the study's own settings.
+void check_points(const ExploreOptions& options, const study::Study& study, size_t points) {
+  if (options.anyway) return;
+  Estimate of_one;
+  try {
+    const study::Case c = study::resolve(study.base, {});
+    RunSize size;
+    size.engine = engine_for(c.scene), size.steps = c.scene.steps, size.threads = 1, size.hash_every = 0;
+    of_one = estimate(c.scene, scene_plan_of(c.scene, c.arch, size.engine, false), size);
+  } catch (const InputError&) {
+    return;  // the study's own settings make no run; its points say so, each by itself
+  }
+  const double jobs = std::min<double>(options.jobs > 0 ? options.jobs : usable_cores(), points);
+  check_memory(fmt::format("{} points at once", jobs), jobs * of_one.memory,
+               "--jobs 1, a larger pitch or a smaller geometry", false);
+  check_time(fmt::format("{} points", points),
+             static_cast<double>(points) * of_one.seconds / std::min<double>(jobs, usable_cores()),
+             "fewer points or a shorter run", false);
+}
+
 int explore(const ExploreOptions& options) {
+  check_workers("--jobs", options.jobs, options.anyway);
   if (study::is_machine_study(options.study)) return explore_machines_of(options);
   if (options.best || options.confirm || !options.emit.empty())
     throw InputError("--best, --confirm and --emit are of studies of machines",
@@ -83,6 +109,7 @@ int explore(const ExploreOptions& options) {
   if (!budget && study.points.empty())
     throw InputError(fmt::format("{}: no [[sweep]], so there are no points", options.study),
                      "--error asks its [search]");
+  if (!budget) check_points(options, study, study.points.size());
   const std::string out = out_of(options.out, options.study, ".study");
   for (const std::string& file : options.add) study::Store::check(file, study);
   return kept_in(out, "cuboct explore", [&] {
@@ -108,7 +135,7 @@ void add_explore(Command& app, int& exit_code) {
   auto [command, options] = add_command<ExploreOptions>(app, "explore", exit_code, explore);
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".study");
-  add_jobs_to(command, options->jobs, "points computed at once");
+  add_jobs_to(command, options->jobs, options->anyway, "points computed at once");
   command.option("--add", options->add, "results of the same study from elsewhere", "FILE");
   command.option(
       "--error", options->error,

@@ -21,6 +21,7 @@ namespace {
 struct FitOptions {
   std::string study, out;
   int jobs = 0;
+  bool anyway = false;
   Answer answer;
 };
 
@@ -184,9 +185,10 @@ void add_fit(Command& app, int& exit_code) {
   Command command = add_command(app, "fit");
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".fit");
-  add_jobs_to(command, options->jobs, "laws tried at once");
+  add_jobs_to(command, options->jobs, options->anyway, "laws tried at once");
   options->answer.add_to(command);
   command.callback([options, &exit_code] {
+    check_workers("--jobs", options->jobs, options->anyway);
     exit_code = is_bond_study(options->study)
                     ? fit_bonds(options->study, options->out, options->jobs, options->answer)
                     : fit_study(*options);

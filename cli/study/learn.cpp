@@ -26,6 +26,7 @@ using learn::Learned;
 struct LearnOptions {
   std::string study, out;
   int jobs = 0;
+  bool anyway = false;
   Answer answer;
 };
 
@@ -97,6 +98,7 @@ void draw(const Learned& found, const std::string& directory) {
 }
 
 void run(const LearnOptions& options) {
+  check_workers("--jobs", options.jobs, options.anyway);
   const learn::LearnStudy study = learn::read_learn_study(options.study);
   const std::string out = out_of(options.out, options.study, ".learn");
   learn::check_loads(study);
@@ -126,7 +128,7 @@ void add_learn(Command& app, int& exit_code) {
   auto [command, options] = add_command<LearnOptions>(app, "learn", exit_code, run);
   add_study_to(command, options->study);
   add_out_to(command, options->out, "study", ".learn");
-  add_jobs_to(command, options->jobs, "samples at once");
+  add_jobs_to(command, options->jobs, options->anyway, "samples at once");
   options->answer.add_to(command);
 }
 

@@ -13,6 +13,7 @@
 #include "cli/study/multiscale_node.h"
 #include "cli/study/multiscale_text.h"
 #include "cli/study/study_command.h"
+#include "hw/program/bounds.h"
 #include "model/base/output.h"
 #include "model/base/progress.h"
 #include "model/base/resources.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct MultiscaleOptions {
   std::string study, out;
-  bool gpu = false;
+  bool gpu = false, anyway = false;
   int threads = 0, fraction = SampleNodeOptions().fraction;
   std::vector<std::string> technologies;  // of a node; empty: none is counted
   std::string clock = "1 GHz";
@@ -93,6 +94,7 @@ void run_comparison(const ElementStudy& study, const MultiscaleOptions& options,
 }
 
 void multiscale(const MultiscaleOptions& options) {
+  check_workers("--threads", options.threads, options.anyway);
   const ElementStudy study = read_element_study(options.study);
   const std::string out = out_of(options.out, options.study, ".multiscale");
   if (study.compare && !options.technologies.empty())
@@ -117,6 +119,7 @@ void add_multiscale(Command& app, int& exit_code) {
   add_out_to(command, options->out, "study", ".multiscale");
   command.option("--threads", options->threads, "they change no bit; default: one per core", "N")
       .range(1, 4096);
+  add_anyway_to(command, options->anyway);
   command.flag("--gpu", options->gpu,
                "relax samples on the first GPU: pays from some 400,000 relaxations on");
   command

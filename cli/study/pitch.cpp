@@ -9,6 +9,8 @@
 #include "cli/programs.h"
 #include "cli/study/budget.h"
 #include "cli/study/study_command.h"
+#include "hw/engine/engines.h"
+#include "hw/program/bounds.h"
 #include "model/analysis/measure.h"
 #include "model/base/json.h"
 #include "model/base/output.h"
@@ -26,6 +28,7 @@ struct PitchOptions {
   std::string error = "5%";
   uint64_t most = 1'000'000;
   int threads = 0;
+  bool anyway = false;
   Answer answer;
 };
 
@@ -100,7 +103,18 @@ std::string json_of(const study::PitchAnswer& answer, const Figure& figure, cons
                       {"directory", json(out)}});
 }
 
+// The finest of its runs.
+void check_size(const PitchOptions& options) {
+  check_workers("--threads", options.threads, options.anyway);
+  constexpr double kNeighbours = 18;  // of a packing with second neighbours
+  const EngineCost& cost = engine_row(options.engine).cost;
+  check_memory(fmt::format("--particles {}", options.most),
+               static_cast<double>(options.most) * (cost.particle + kNeighbours * cost.neighbour + cost.cell),
+               fmt::format("--particles {}", PitchOptions().most), options.anyway);
+}
+
 int find(const PitchOptions& options) {
+  check_size(options);
   catch_interrupts();
   study::PitchQuestion question;
   question.base = study::read_base(options.scene, options.arch);
@@ -180,6 +194,7 @@ void add_pitch(Command& app, int& exit_code) {
       .range(uint64_t{100}, uint64_t{100'000'000})
       .show_default();
   command.option("--threads", options->threads, "of the host; default: one per core", "N").range(1, 4096);
+  add_anyway_to(command, options->anyway);
   add_out_to(command, options->out, "scene", ".pitch");
   options->answer.add_to(command);
 }

@@ -12,6 +12,7 @@
 #include "cli/programs.h"
 #include "cli/run/outputs.h"
 #include "hw/plan/setup.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/error.h"
@@ -40,6 +41,7 @@ struct StabilityOptions {
   double strain = 0.1;
   double resolution = 0.002;
   int threads = 0;
+  bool anyway = false;
 };
 
 // The matrix of a million particles takes 3 GB.
@@ -153,6 +155,7 @@ std::string json_of(const Scene& scene, const std::vector<Row>& rows, const std:
 }
 
 void check(const StabilityOptions& options) {
+  check_workers("--threads", options.threads, options.anyway);
   if (!(options.strain >= 0 && options.strain <= 0.5))
     throw InputError(
         fmt::format("--strain: {:g} is not in [0, 0.5]: the part of its length that the body is "
@@ -169,6 +172,9 @@ void measure(const StabilityOptions& options, const Scene& scene, const Arch& ar
     throw InputError(fmt::format("{} particles: 'cuboct stability' builds the matrix of at most {}",
                                  scene.body.size(), kMostForStability),
                      "a smaller piece of the same body has the same limit");
+  check_memory(fmt::format("{} particles", scene.body.size()),
+               static_cast<double>(scene.body.size()) * 3e9 / kMostForStability,
+               "a smaller piece of the same body has the same limit", options.anyway);
   std::optional<DirectoryLock> lock;
   if (!options.maps.empty()) {
     study::check_maps(scene);
@@ -253,6 +259,7 @@ void add_stability(Command& app, int& exit_code) {
       .proposed({"x", "y", "z"});
   command.option("--resolution", options->resolution, "of the measured limits, relative", "R").show_default();
   command.option("--threads", options->threads, "of the engines; default: 1", "N").range(1, 4096);
+  add_anyway_to(command, options->anyway);
 }
 
 }  // namespace cuboct

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/answer.h"
+#include "hw/program/bounds.h"
 #include "hw/program/options.h"
 #include "model/base/directory_lock.h"
 #include "model/base/interrupt.h"
@@ -27,8 +28,9 @@ inline void add_out_to(Command& command, std::string& out, const std::string& of
                  fmt::format("directory for results; default: that of the {}'s name with {}", of, ending),
                  "DIR");
 }
-inline void add_jobs_to(Command& command, int& jobs, const std::string& what) {
+inline void add_jobs_to(Command& command, int& jobs, bool& anyway, const std::string& what) {
   command.option("--jobs", jobs, what + "; default: one per core", "N").range(1, 4096);
+  add_anyway_to(command, anyway);
 }
 
 inline std::string out_of(const std::string& out, const std::string& file, const std::string& ending) {

@@ -8,6 +8,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "model/base/clock.h"
@@ -66,14 +67,23 @@ void work_off(std::vector<Piece> pieces, int jobs, const std::string& label, boo
   Board board;
   const size_t most = jobs > 0 ? static_cast<size_t>(jobs) : static_cast<size_t>(usable_cores());
   std::vector<std::thread> threads;
-  board.running = std::min(most, pieces.size());
-  for (size_t k = 0, count = board.running; k < count; ++k)
-    threads.emplace_back([&] {
-      worker(pieces, board);
+  const size_t count = std::min(most, pieces.size());
+  threads.reserve(count);
+  board.running = count;
+  const auto work = [&] {
+    worker(pieces, board);
+    const std::lock_guard guard(board.mutex);
+    --board.running;
+    board.changed.notify_all();
+  };
+  for (size_t k = 0; k < count; ++k) try {
+      threads.emplace_back(work);
+    } catch (const std::system_error&) {  // fewer take longer, but there must be one
+      if (k == 0) throw;
       const std::lock_guard guard(board.mutex);
-      --board.running;
-      board.changed.notify_all();
-    });
+      board.running -= count - k;
+      break;
+    }
   const auto begin = Clock::now();
   {
     StatusLine line;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <regex>
 
+#include "hw/program/bounds.h"
 #include "tests/cli/shell.h"
 
 namespace cuboct::test {
@@ -239,6 +240,11 @@ TEST_F(LimitsTest, FramesBeyondTheDisk) {
                              "--anyway runs it all the same\n")))
       << answer.err;
   EXPECT_FALSE(std::filesystem::exists(out + "/trace.h5"));
+  const Answer more = bench_.cuboct({"run", "scenes/plate.toml", "--steps", "1000000", "--frame-every", "1",
+                                     "--checkpoint-every", "1 h", "--out", out},
+                                    0, kSmall);
+  EXPECT_EQ(more.code, 2);
+  EXPECT_NE(more.err.find(" TB for checkpoints: "), std::string::npos) << more.err;
 }
 
 TEST_F(LimitsTest, ThreadsAndRanksBeyondTheMachine) {
@@ -256,8 +262,136 @@ TEST_F(LimitsTest, ThreadsAndRanksBeyondTheMachine) {
   EXPECT_EQ(answer.code, 2);
   EXPECT_TRUE(std::regex_match(
       answer.err,
-      std::regex("--threads 4096: this machine has [0-9]+ cores? to use\n  hint: --threads [0-9]+\n")))
+      std::regex("--threads 4096: this machine has [0-9]+ cores? to use\n  hint: --threads [0-9]+; "
+                 "--anyway runs it all the same\n")))
       << answer.err;
+  // What the scene has no nodes for no yes can give it.
+  answer = bench_.cuboct({"run", "scenes/lj_block.toml", "--steps", "2", "--ranks", "1000", "--anyway"}, {},
+                         {.cpu_seconds = 20});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.err.find("and the scene 27 nodes"), std::string::npos) << answer.err;
+}
+
+// A command says so before it reads a file or makes one.
+TEST_F(LimitsTest, ThreadsAndJobsOfEveryCommand) {
+  const std::string scene = file("scene.toml", block("cells = [6, 6, 6]"));
+  const std::vector<std::vector<std::string>> commands{
+      {"run", scene, "--threads"},
+      {"run", scene, "--engine", "reference", "--threads"},
+      {"crosscheck", scene, "--engines", "golden,lattice", "--threads"},
+      {"measure", "none", "rdf", "--threads"},
+      {"stability", "none", "--threads"},
+      {"elastic", "none", "--threads"},
+      {"pitch", "none", "--threads"},
+      {"multiscale", "none", "--threads"},
+      {"bench", "none", "--threads"},
+      {"explore", "none", "--jobs"},
+      {"fit", "none", "--jobs"},
+      {"learn", "none", "--jobs"}};
+  size_t refused = 0;
+  for (std::vector<std::string> words : commands) {
+    const std::string told = fmt::format("{} {}: {}\n", words.back(), most_workers() + 1, cores_text());
+    words.push_back(std::to_string(most_workers() + 1));
+    Answer answer = bench_.cuboct(words, {}, kSmall);
+    if (answer.err.find("was built without") != std::string::npos) continue;
+    ++refused;
+    EXPECT_EQ(answer.code, 2) << words[0];
+    EXPECT_EQ(answer.out, "") << words[0];
+    EXPECT_TRUE(answer.err.starts_with(told)) << words[0] << answer.err;
+    EXPECT_TRUE(answer.err.ends_with("; --anyway runs it all the same\n")) << words[0] << answer.err;
+    words.emplace_back("--anyway");
+    answer = bench_.cuboct(words, {}, kSmall);
+    EXPECT_EQ(answer.err.find("cores to use"), std::string::npos) << words[0] << answer.err;
+    words[words.size() - 2] = std::to_string(most_workers());
+    words.pop_back();
+    answer = bench_.cuboct(words, {}, kSmall);
+    EXPECT_EQ(answer.err.find("cores to use"), std::string::npos) << words[0] << answer.err;
+  }
+  EXPECT_GE(refused, 6u);
+}
+
+TEST_F(LimitsTest, ARunOfYears) {
+  const std::string scene =
+      file("scene.toml", kHead + kPair + "[run]\ndt = 0.001\nsteps = 1000000000000000\n");
+  Answer answer = bench_.cuboct({"run", scene, "--engine", "reference"}, {}, kSmall);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(std::regex_match(
+      without_excerpt(answer.err),
+      std::regex(".*scene.toml:14:9: the run takes about [0-9.e+]+ (days|years): 2e\\+15 particle-steps on "
+                 "1 thread\n  hint: [0-9]+ steps would take a day; --anyway runs it all the same\n")))
+      << answer.err;
+  // The yes: it begins, and ends by its limit.
+  answer = bench_.cuboct({"run", scene, "--engine", "reference", "--anyway"}, {}, {.cpu_seconds = 2});
+  EXPECT_NE(answer.code, 2) << answer.err;
+  EXPECT_EQ(answer.err.find("would take a day"), std::string::npos) << answer.err;
+  answer = bench_.cuboct({"crosscheck", scene, "--engines", "golden,lattice"}, {}, kSmall);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_NE(answer.err.find("--anyway runs it all the same"), std::string::npos) << answer.err;
+}
+
+TEST_F(LimitsTest, CountsOfYears) {
+  const std::string scene = file("scene.toml", block("cells = [6, 6, 6]"));
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
+      {{"energy", scene, "--steps", "100000000000000"}, "--steps 100000000000000: that takes about "},
+      {{"boards", scene, "--nodes", "8", "--steps", "100000000000000"},
+       "--steps 100000000000000: that takes about "},
+      {{"emit", scene, "--vector-steps", "100000000000", "--out", bench_.path("project")},
+       "--vector-steps 100000000000: that takes about "},
+      {{"bench", "lattice", "--repeats", "1000", "--seconds", "10000"},
+       " with --repeats 1000 --seconds 10000: that takes about "}};
+  for (const auto& [words, told] : commands) {
+    const Answer answer = bench_.cuboct(words, {}, kSmall);
+    EXPECT_EQ(answer.code, 2) << words[0] << answer.err;
+    EXPECT_NE(answer.err.find(told), std::string::npos) << words[0] << answer.err;
+    EXPECT_TRUE(answer.err.ends_with("; --anyway runs it all the same\n")) << words[0] << answer.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(bench_.path("project")));
+}
+
+#ifdef CUBOCT_HAS_STUDIES
+TEST_F(LimitsTest, AStudyBeyondTheMachine) {
+  const std::string study = file("study.toml",
+                                 "scene = \"scene.toml\"\n[[figure]]\nkind = \"mean\"\nname = \"p\"\n"
+                                 "curve = \"energy.potential\"\n[[sweep]]\nstrength_bits = [18, 20]\n");
+  const std::string out = bench_.path("results");
+  const auto explore = [&](const std::string& scene, const Limits& limits) {
+    file("scene.toml", scene);
+    return bench_.cuboct({"explore", study, "--jobs", "2", "--out", out}, {}, limits);
+  };
+  std::string years = block("cells = [6, 6, 6]");
+  years.replace(years.find("steps = 10"), 10, "steps = 10000000000000");
+  Answer answer = explore(years, kSmall);
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(
+      std::regex_match(answer.err, std::regex("2 points: that takes about [0-9.]+ (days|years)\n"
+                                              "  hint: fewer points or a shorter run; --anyway runs it "
+                                              "all the same\n")))
+      << answer.err;
+  answer = explore(block("cells = [40, 40, 40]"), {.memory = uint64_t{400} << 20, .cpu_seconds = 20});
+  EXPECT_EQ(answer.code, 2);
+  EXPECT_TRUE(std::regex_search(
+      answer.err, std::regex("^2 points at once: that takes about [0-9.]+ MB of memory: [0-9.]+ MB are free\n"
+                             "  hint: --jobs 1, a larger pitch or a smaller geometry; --anyway ")))
+      << answer.err;
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+#endif
+
+TEST_F(LimitsTest, MatricesAndPitchesBeyondMemory) {
+  constexpr Limits kLittle{.memory = uint64_t{500} << 20, .cpu_seconds = 20};
+  const std::string scene = file("scene.toml", block("cells = [40, 40, 40]"));
+  const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
+      {{"stability", scene}, "256000 particles: that takes about 768 MB of memory: "},
+      {{"elastic", file("small.toml", block("cells = [18, 18, 18]"))},
+       "23328 particles: that takes about 467 MB of memory: "},
+      {{"pitch", scene, "--particles", "2000000"}, "--particles 2000000: that takes about "}};
+  for (const auto& [words, told] : commands) {
+    const Answer answer = bench_.cuboct(words, {}, kLittle);
+    if (answer.err.find("was built without") != std::string::npos) continue;
+    EXPECT_EQ(answer.code, 2) << words[0] << answer.err;
+    EXPECT_NE(answer.err.find(told), std::string::npos) << words[0] << answer.err;
+    EXPECT_NE(answer.err.find("; --anyway runs it all the same\n"), std::string::npos) << answer.err;
+  }
 }
 
 // The estimates of `check` against what a run takes.

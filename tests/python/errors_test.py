@@ -207,6 +207,9 @@ class Errors(unittest.TestCase):
             self.refused(simulation.step, wrong)
         self.refused(cuboct.run, block, steps=-1)
         self.refused(cuboct.run, block, threads=0)
+        for engine in ("reference", "lattice"):
+            for of in (cuboct.run, cuboct.Simulation):
+                self.assertIn("threads 1000000: this machine has", self.refused(of, block, engine, threads=10**6).message)
         self.refused(cuboct.run, block, hash_every=0)
         self.refused(simulation.picture, limit=float("nan"))
         self.refused(simulation.picture, width=3)
