@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hw/rtl/rtl_prefix.h"
+#include "hw/rtl/rtl_project.h"
 #include "model/base/error.h"
 
 namespace cuboct::synth {
@@ -53,6 +54,13 @@ Project read_project(const std::string& directory) {
   } catch (const Json::parse_error& error) {
     throw InputError(fmt::format("{}: is not JSON, at byte {}", file, error.byte), kHint);
   }
+  // Projects of before there were versions are like the first.
+  const auto version =
+      json.is_object() && json.contains("version") ? entry<uint64_t>(json, file, "version") : kProjectVersion;
+  if (version != kProjectVersion)
+    throw InputError(fmt::format("{}: a project of version {}: this cuboct reads version {}", file, version,
+                                 kProjectVersion),
+                     "emit it again, or take the cuboct that wrote it");
   Project project;
   project.directory = directory;
   project.plan = entry<std::string>(json, file, "plan");

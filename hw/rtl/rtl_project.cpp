@@ -64,6 +64,7 @@ std::string print_project(const Plan& plan, const State& initial, const std::vec
   add("halo_record", plan.words.halo_bits);
   add("link", plan.words.link_bits);
   const Json json = {
+      {"version", kProjectVersion},
       {"plan", fmt::format("{:016x}", plan.hash)},
       {"nodes", plan.nodes()},
       {"cells", plan.lattice.size()},

@@ -21,6 +21,9 @@ struct CountedCycles {
   double mean() const { return static_cast<double>(cycles) / static_cast<double>(steps); }
 };
 
+// Of the format: what other versions wrote is refused.
+inline constexpr uint64_t kProjectVersion = 1;
+
 // JSON, indented by two, keys in fixed order. `files` are the modules' paths in the order to read; expected
 // cycles per step are those of hw/cost/cycles.h at the initial state; `counted` stands beside them where
 // there is some. docs/reference/synth.md says what each entry is.

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Files that versions left are read by this one, or refused with the version that they have.
 
-usage: check.py CUBOCT; tests/samples/VERSION holds a run of scene.toml, its checkpoint and the results of study.toml. Those that are
-of another version, by one word, must be refused: the check sees that."""
+usage: check.py CUBOCT [project] [synth]; tests/samples/VERSION holds a run of scene.toml, its checkpoint, the results of study.toml and a project
+that was emitted of the scene, without its pages. Those that are of another version, by one word, must be refused: the check sees that.
+project: the build has `cuboct synth`, which reads projects; synth: it does so here, for seconds."""
 import gzip
 import json
 import re
@@ -11,6 +12,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import tarfile
 import tempfile
 from pathlib import Path
 
@@ -18,6 +20,7 @@ HERE = Path(__file__).resolve().parent
 REFUSED = re.compile(r"version \d+")
 RESUME = ["run", "scene.toml", "--engine", "golden", "--steps", "24", "--frames", "none", "--checkpoint-every", "6 steps", "--quiet", "--out", "run",
           "--resume"]
+SYNTH = ["synth", "project", "--target", "hx8k", "--unit", "tick", "--no-place", "--quiet"]
 VERSION_AT = 8  # byte of a checkpoint where its version stands
 
 
@@ -26,7 +29,11 @@ def lay_out(sample, folder):
         shutil.copy(HERE / name, folder)
     (folder / "run").mkdir()
     (folder / "study").mkdir()
+    with tarfile.open(sample / "project.tar.gz") as project:
+        project.extractall(folder)
     for file in sample.iterdir():
+        if file.name.startswith("project"):
+            continue
         to = folder / ("study" if file.name.startswith("results") else "run")
         if file.suffix == ".gz":
             (to / file.stem).write_bytes(gzip.decompress(file.read_bytes()))
@@ -39,8 +46,8 @@ def state_hash(folder):
 
 
 class Check:
-    def __init__(self, cuboct):
-        self.cuboct, self.wrong, self.read = Path(cuboct).resolve(), [], 0
+    def __init__(self, cuboct, parts):
+        self.cuboct, self.parts, self.wrong, self.read = Path(cuboct).resolve(), parts, [], 0
 
     def takes(self, folder, words, holds=lambda said: True, only_refused=False):
         done = subprocess.run([self.cuboct, *words], cwd=folder, capture_output=True, text=True)
@@ -66,10 +73,16 @@ class Check:
             self.takes(folder, RESUME, only_refused=True)
             checkpoint.write_bytes(held)
             self.takes(folder, RESUME, lambda said: state_hash(folder) == whole)
+            if "synth" in self.parts:
+                self.takes(folder, SYNTH, lambda said: "LUT" in said)
+            if "project" in self.parts:
+                described = folder / "project" / "project.json"
+                described.write_text(described.read_text().replace('"version": 1,', '"version": 99,'))
+                self.takes(folder, SYNTH, only_refused=True)
 
 
 def main():
-    check = Check(sys.argv[1])
+    check = Check(sys.argv[1], sys.argv[2:])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         shutil.copy(HERE / "scene.toml", folder)

@@ -104,6 +104,26 @@ TEST_F(Refuse, TellsOfTheProject) {
   EXPECT_EQ(project.files, files);
 }
 
+TEST_F(Refuse, AProjectOfAnotherVersion) {
+  emit();
+  std::ifstream in(dir_ + "/project.json");
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::string version = "\"version\": 1,";
+  const size_t at = text.find(version);
+  ASSERT_NE(at, std::string::npos);
+  std::string other = text;
+  write("project.json", other.replace(at, version.size(), "\"version\": 2,"));
+  EXPECT_EQ(
+      refused_with([&] { read_project(dir_); }),
+      dir_ +
+          "/project.json: a project of version 2: this cuboct reads version 1\n  hint: emit it again, or "
+          "take the cuboct that wrote it");
+  // Those of before there were versions.
+  other = text;
+  write("project.json", other.erase(at, version.size()));
+  EXPECT_EQ(read_project(dir_).plan.size(), 16u);
+}
+
 // What was counted is what clocks are divided by; what is expected is for projects without it.
 TEST_F(Refuse, CountedCyclesAreThoseOfTheProject) {
   emit(CountedCycles{4, 250, 64});
