@@ -31,7 +31,7 @@ namespace {
 struct Parsed {
   ProgramOptions options;
   std::string scene_path, frames_file, frame_files, begun, interval, error, log;
-  bool frames_given = false, unpacked = false;
+  bool frames_given = false, unpacked = false, keeps_checkpoint = false;
 };
 
 void settle(const EngineProgram& program, Parsed& parsed, const Scene& scene) {
@@ -136,7 +136,7 @@ int run_scene(EngineProgram& program, Parsed& parsed, Scene& scene, const Arch& 
   if (writer) writer->finish(result.trace);
   const int code = tell(program, parsed, scene, plan, result);
   if (!trouble.empty()) throw InputError(trouble);
-  if (!result.interrupted) remove_checkpoint(options.run.checkpoint.path);
+  if (!result.interrupted && !parsed.keeps_checkpoint) remove_checkpoint(options.run.checkpoint.path);
   return code;
 }
 
@@ -172,6 +172,8 @@ void add_options(Command& app, EngineProgram& program, Parsed& parsed) {
   app.option("--from", options.from, "Directory of a run: this one begins with its last state");
   app.option("--steps", options.steps, "Steps to run; the scene's own number without it");
   app.option("--out", options.out, "Trace file to write (HDF5); --bench does without");
+  app.flag("--keep-checkpoint", parsed.keeps_checkpoint,
+           "Leave the checkpoint at the end: who started this removes it, once all is written");
   app.flag("--unpacked", parsed.unpacked, "Do not compress the trace: larger, and written in less time");
   app.option("--error", parsed.error, "File that takes an error, in place of standard error");
   app.option("--frame-files", parsed.frame_files,

@@ -25,6 +25,7 @@ Remote::Remote(RemoteRun run) : run_(std::move(run)) {
   for (const auto& [option, value] :
        {std::pair{"--stage", run_.stage}, {"--from", run_.from}, {"--scene-path", run_.scene_path}})
     if (!value.empty()) arguments.insert(arguments.end(), {option, value});
+  if (!run_.request.checkpoint.path.empty()) arguments.emplace_back("--keep-checkpoint");
   if (run_.unpacked) arguments.emplace_back("--unpacked");
   if (run_.request.keep) {
     frames_.emplace(file(".frame"));
@@ -74,6 +75,9 @@ void Remote::wait() {
   if (fs::exists(file(".error"))) error = read_error(file(".error"));
   for (const char* ending : {".steps", ".begun", ".errors", ".error"}) fs::remove(file(ending));
   const bool left = fs::exists(run_.trace);
+  // Of a program that was ended while it wrote one.
+  const std::string& checkpoint = run_.request.checkpoint.path;
+  if (code != 0 && !checkpoint.empty()) fs::remove(checkpoint + ".tmp");
   // Ranks that could not write all of it leave what they have.
   if (code == 2 && over_mpi() && left) {
     trouble_ = error ? parts_of(*error).message : "the ranks could not write all of it";
@@ -86,9 +90,15 @@ void Remote::wait() {
   if (interrupted() && (code < 0 || over_mpi()))
     throw std::runtime_error(fmt::format("interrupted before {} began", over_mpi() ? "the ranks" : name));
   if (!said.empty()) throw std::runtime_error(said);
-  if (code < 0)
-    throw std::runtime_error(fmt::format("{} was ended by signal {} ({})", name, -code, strsignal(-code)));
-  throw std::runtime_error(fmt::format("{} ended with exit code {}", name, code));
+  const std::string goes_on =
+      !checkpoint.empty() && fs::exists(checkpoint) ? "; --resume goes on from the last checkpoint" : "";
+  // A shell's way, and mpirun's, to tell of a signal.
+  const int signal = code < 0 ? -code : over_mpi() && code > 128 ? code - 128 : 0;
+  if (signal > 0)
+    throw std::runtime_error(fmt::format("{} was ended by signal {} ({}){}", code < 0 ? name : "a rank",
+                                         signal, strsignal(signal), goes_on));
+  const std::string why = over_mpi() ? ": MPI failed, or a rank gave up" : "";
+  throw std::runtime_error(fmt::format("{} ended with exit code {}{}{}", name, code, why, goes_on));
 }
 
 Recorded Remote::read() const {

@@ -90,6 +90,16 @@ TEST_F(LatticeProgram, TakesKeptStepsFromAFile) {
                  "none: cannot read this file\n");
 }
 
+// Until the command that started the program has written all of the run, it could still have to go on.
+TEST_F(LatticeProgram, LeavesItsCheckpointToWhoAsks) {
+  const std::string options = "--checkpoint-every '10 steps' --checkpoint '" + path("checkpoint") + "'";
+  traced(options);
+  EXPECT_FALSE(std::filesystem::exists(path("checkpoint")));
+  const Trace whole = traced(options + " --keep-checkpoint");
+  ASSERT_TRUE(std::filesystem::exists(path("checkpoint")));
+  EXPECT_EQ(traced(options + " --resume").state_hash, whole.state_hash);
+}
+
 TEST_F(LatticeProgram, TellsItsSpeed) {
   const Answer answer = run("scenes/lj_block.toml --steps 200 --bench --threads 1 --cycles");
   EXPECT_EQ(answer.code, 0) << answer.err;

@@ -3,6 +3,7 @@
 //   CUBOCT_FAIL_CALL  group of calls: open, write, rename, sync, truncate, mmap, fork, thread, memory, directory, read
 //   CUBOCT_FAIL_AT    which of them, from 1; 0: none
 //   CUBOCT_FAIL_IN    the program, by the name of its file; its children of other names are spared
+//   CUBOCT_FAIL_RANK  of ranks: in this one alone
 //   CUBOCT_FAIL_KILLS set: the program is killed there instead
 //   CUBOCT_FAIL_MARK  file that the failing call makes: the function's name, and from where in the program it was called, or 0
 #define _GNU_SOURCE
@@ -64,9 +65,11 @@ static int wrapped_main(int argc, char** argv, char** environment) {
   const char* const call = getenv("CUBOCT_FAIL_CALL");
   const char* const in = getenv("CUBOCT_FAIL_IN");
   const char* const number = getenv("CUBOCT_FAIL_AT");
+  const char *const rank = getenv("CUBOCT_FAIL_RANK"), *const here = getenv("OMPI_COMM_WORLD_RANK");
+  const int mine = rank == NULL || (here != NULL && strcmp(rank, here) == 0);
   mark = getenv("CUBOCT_FAIL_MARK");
   kills = getenv("CUBOCT_FAIL_KILLS") != NULL;
-  if (call != NULL && number != NULL && (in == NULL || strcmp(in, program_invocation_short_name) == 0)) {
+  if (call != NULL && number != NULL && mine && (in == NULL || strcmp(in, program_invocation_short_name) == 0)) {
     for (int k = 0; k < None; ++k)
       if (strcmp(call, kNames[k]) == 0) wanted = (enum Group)k;
     at = atol(number);

@@ -4,7 +4,8 @@
 nothing is left behind. usage: sweep.py BIN FAIL_CALL.so [--engines E,...] [--calls C,...] [--most N] [--grow SHARE]
 
 A run is new, or goes on from a checkpoint. The n-th call fails for n = 1, 2, 3, ... until the run makes fewer; beyond
---most the step grows by SHARE of n."""
+--most the step grows by SHARE of n. Where the engine is a program of its own, or ranks, its calls fail too. Behind a call,
+":kill": the engine's program is killed there instead. --gpu has the engine on the host, --mpi FAIL_MPI.so, --board cuboct-board-sim."""
 import argparse
 import bisect
 import collections
@@ -16,14 +17,19 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
-SCENE = Path(__file__).resolve().parent.parent / "samples" / "scene.toml"
+ROOT = Path(__file__).resolve().parent.parent.parent
+SCENE, ARCH = ROOT / "tests" / "samples" / "scene.toml", ROOT / "scenes" / "archs" / "icebreaker.toml"
 CALLS = "open write rename sync truncate mmap fork thread memory directory read".split()
-PROGRAMS = {"systemc": "cuboct-systemc", "gpu": "cuboct-gpu"}  # others run in the command's own process
+# Others run in the command's own process.
+PROGRAMS = {"systemc": "cuboct-systemc", "rtl": "cuboct-rtl", "fpga": "cuboct-fpga", "gpu": "cuboct-gpu", "gpus": "cuboct-gpu",
+            "ranks": "cuboct-lattice"}
+WORDS = {"ranks": ["--engine", "lattice", "--ranks", "2"], "gpus": ["--engine", "gpu", "--gpus", "2"]}
 RUN = ["run", "scene.toml", "--steps", "24", "--frame-every", "6", "--frames", "xyz", "--quiet", "--out", "out"]
 CHECKPOINTS = ["--checkpoint-every", "6 steps"]
-WITHOUT = {"systemc"}  # engines that leave no checkpoints
+WITHOUT = {"systemc", "rtl"}  # engines that leave no checkpoints
 SECONDS = 60
 LEFT = re.compile(r"\.tmp|\.part|~$|\.lock$")  # of a directory that no run is at work in
 KEPT = {"out/trace.part.h5": "trace.h5", "out/rasters.part.h5": "rasters.h5"}  # frames so far, where the file itself could not be made
@@ -47,16 +53,42 @@ class Runs:
         self.folder = Path(tempfile.mkdtemp(prefix="cuboct-faults-"))
         shutil.copy(SCENE, self.folder / "scene.toml")
         (self.folder / "tmp").mkdir()
+        if given.gpu:  # the engine stands beside the command
+            (self.folder / "bin").mkdir()
+            for program, path in ("cuboct", self.bin / "cuboct"), ("cuboct-read-trace", self.bin / "cuboct-read-trace"), ("cuboct-gpu", given.gpu):
+                shutil.copy(path, self.folder / "bin" / program)
+            self.bin = self.folder / "bin"
+        self.board = None
         self.out, self.mark = self.folder / "out", self.folder / "mark"
 
     def run(self, words, **fault):
         environment = {**os.environ, "TMPDIR": str(self.folder / "tmp"), "XDG_CACHE_HOME": str(self.folder / "cache"), "LC_ALL": "C"}
         if fault:
-            environment |= {"LD_PRELOAD": str(self.library), "CUBOCT_FAIL_MARK": str(self.mark)}
+            libraries = [self.library] + ([self.given.mpi] if self.given.mpi and fault["call"] == "mpi" else [])
+            environment |= {"LD_PRELOAD": ":".join(map(str, libraries)), "CUBOCT_FAIL_MARK": str(self.mark)}
             environment |= {f"CUBOCT_FAIL_{key.upper()}": str(value) for key, value in fault.items()}
         self.mark.unlink(missing_ok=True)
         return subprocess.run([self.bin / "cuboct", *words], cwd=self.folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
                               timeout=SECONDS)
+
+    def start_board(self):
+        """The words that reach a board of this scene's machine, Verilated."""
+        project, port, cache = self.folder / "project", self.folder / "port", {"XDG_CACHE_HOME": str(self.given.cache)} if self.given.cache else {}
+        emit = ["emit", "scene.toml", "--arch", ARCH, "--board", "icebreaker", "--baud", "3000000", "--unchecked", "--out", project]
+        done = subprocess.run([self.bin / "cuboct", *emit], cwd=self.folder, capture_output=True)
+        if done.returncode != 0:
+            raise SystemExit(done.stderr.decode())
+        self.board = subprocess.Popen([self.given.board, project], stdout=open(port, "wb"), env={**os.environ, **cache})
+        while not port.read_bytes().endswith(b"\n"):
+            if self.board.poll() is not None:
+                raise SystemExit("cuboct-board-sim ended")
+            time.sleep(0.05)
+        return ["--arch", str(ARCH), "--baud", "3000000", "--port", port.read_text().strip()]
+
+    def end(self):
+        if self.board:
+            self.board.kill()
+        shutil.rmtree(self.folder)
 
     def clear(self):
         shutil.rmtree(self.out, ignore_errors=True)
@@ -76,7 +108,9 @@ class Runs:
 class Sweep:
     def __init__(self, runs, engine):
         self.runs, self.engine = runs, engine
-        self.words = RUN + ["--engine", engine] + ([] if engine in WITHOUT else CHECKPOINTS)
+        self.words = RUN + WORDS.get(engine, ["--engine", engine]) + ([] if engine in WITHOUT else CHECKPOINTS)
+        if engine == "fpga":
+            self.words += runs.start_board()
         self.wrong, self.ends, self.said, self.functions = [], collections.Counter(), {}, {}
         runs.clear()
         whole = runs.run(self.words)
@@ -93,6 +127,7 @@ class Sweep:
             self.runs.run(self.words, call="rename", at=at, kills=1)
             if not (self.runs.out / "checkpoint").exists():
                 continue
+            time.sleep(0.5 if self.engine in PROGRAMS else 0)  # its program ends, too
             shutil.copytree(self.runs.out, cut)
             return cut
         return None
@@ -133,7 +168,7 @@ class Sweep:
             self.functions[program] = Functions(self.runs.bin / program)
         return self.functions[program].at(place).startswith("H5")
 
-    def one(self, start, call, program, at):
+    def one(self, start, call, program, at, rank=None):
         """False where the run made fewer such calls."""
         runs = self.runs
         runs.clear()
@@ -142,26 +177,37 @@ class Sweep:
         before = set(runs.left())
         try:
             words = self.words + (["--resume"] if start == "resumed" else [])
-            done = runs.run(words, call=call, at=at, **({"in": program}))
+            fault = {"call": call.removesuffix(":kill"), "at": at, "in": program}
+            if call.endswith(":kill"):
+                fault["kills"] = 1
+            if rank is not None:
+                fault["rank"] = rank
+            done = runs.run(words, **fault)
         except subprocess.TimeoutExpired:
-            self.wrong.append(f"{self.engine} {start} {call} {program} {at}: does not end")
+            self.wrong.append(f"{self.engine} {start} {call} {program} {rank or ''} {at}: does not end")
             return True
         if not runs.mark.exists():
             return False
         function, place = runs.mark.read_text().split()
         # Some allocations of HDF5's that fail crash it: as after a kill the next run must go on.
         crashed = call == "memory" and done.returncode == -signal.SIGSEGV and self.is_hdf5(program, int(place, 16))
-        self.judge((start, call, function, program, at), done, before, crashed)
+        self.judge((start, call, function, program, at) + ((f"rank {rank}",) if rank is not None else ()), done, before, crashed)
         return True
 
     def all(self, calls, most, grow):
         for start in ["new"] + (["resumed"] if self.cut else []):
             for call in calls:
-                for program in ["cuboct"] + ([PROGRAMS[self.engine]] if self.engine in PROGRAMS else []):
+                for program, rank in self.places(call):
                     at = 1
-                    while self.one(start, call, program, at):
+                    while self.one(start, call, program, at, rank):
                         at += 1 if at < most else max(1, int(grow * at))
         return self
+
+    def places(self, call):
+        """Where it fails: the command, and the engine's program or each of two ranks."""
+        program = PROGRAMS.get(self.engine)
+        here = [] if call in ("mpi", "device") or call.endswith(":kill") else [("cuboct", None)]
+        return here + ([] if program is None else [(program, rank) for rank in ((0, 1) if self.engine == "ranks" else (None,))])
 
 
 def main():
@@ -172,6 +218,10 @@ def main():
     parser.add_argument("--calls", default=",".join(CALLS))
     parser.add_argument("--most", type=int, default=200)
     parser.add_argument("--grow", type=float, default=0.1)
+    parser.add_argument("--gpu", type=lambda p: Path(p).resolve())
+    parser.add_argument("--mpi", type=lambda p: Path(p).resolve())
+    parser.add_argument("--board", type=lambda p: Path(p).resolve())
+    parser.add_argument("--cache", type=lambda p: Path(p).resolve(), help="of the board, compiled")
     parser.add_argument("--tell", action="store_true", help="each kind of end")
     given = parser.parse_args()
     runs = Runs(given)
@@ -185,7 +235,7 @@ def main():
             for (call, code, said), case in sorted(sweep.said.items(), key=str):
                 print(f"  {code} {' '.join(map(str, case))}: {said!r}")
     print("\n".join(wrong))
-    shutil.rmtree(runs.folder)
+    runs.end()
     sys.exit(bool(wrong) or total == 0)
 
 

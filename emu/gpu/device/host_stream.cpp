@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "emu/gpu/device/host_stream.h"
 
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
 
 namespace cuboct::gpu {
@@ -11,25 +15,50 @@ Shuffle& Shuffle::all() {
   return shuffle;
 }
 
+namespace {
+
+// For tests (tests/faults): from its CUBOCT_FAIL_AT-th call on the device is lost, where CUBOCT_FAIL_CALL is
+// "device". As CUDA's, launches fail where somebody waits for them.
+void call_device(const char* what) {
+  static const long at = [] {
+    const char *call = std::getenv("CUBOCT_FAIL_CALL"), *number = std::getenv("CUBOCT_FAIL_AT");
+    return call != nullptr && number != nullptr && std::string_view(call) == "device" ? std::atol(number) : 0;
+  }();
+  static long count = 0;
+  if (at == 0 || ++count < at) return;
+  if (const char* mark = std::getenv("CUBOCT_FAIL_MARK"); mark != nullptr && count == at)
+    if (std::FILE* file = std::fopen(mark, "w")) std::fprintf(file, "device 0"), std::fclose(file);
+  throw std::runtime_error(std::string("CUDA: ") + what + ": unspecified launch failure");
+}
+
+}  // namespace
+
 Stream::Stream(int device, bool) : device_(device) {
+  call_device("make a stream");
   if (Shuffle::all().on) Shuffle::all().streams.push_back(this);
 }
 
 Stream::~Stream() {
-  synchronize();
+  try {
+    synchronize();
+  } catch (const std::runtime_error&) {  // a lost device has nothing to wait for
+  }
   std::erase(Shuffle::all().streams, this);
 }
 
 void Stream::record(Event& event) {
+  call_device("record an event");
   ++event.issued_;
   later([&event] { ++event.reached_; });
 }
 
 void Stream::wait(const Event& event) {
+  call_device("wait for an event");
   if (Shuffle::all().on) add({&event, event.issued_, [] {}});
 }
 
 void Stream::synchronize() {
+  call_device("run on the device");
   while (!queue_.empty()) go_on();
 }
 
