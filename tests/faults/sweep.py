@@ -24,9 +24,9 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE, ARCH = ROOT / "tests" / "samples" / "scene.toml", ROOT / "scenes" / "archs" / "icebreaker.toml"
 CALLS = "open write rename sync truncate mmap fork thread memory directory read".split()
 # Others run in the command's own process.
-PROGRAMS = {"systemc": "cuboct-systemc", "rtl": "cuboct-rtl", "fpga": "cuboct-fpga", "gpu": "cuboct-gpu", "gpus": "cuboct-gpu",
+PROGRAMS = {"systemc": "cuboct-systemc", "rtl": "cuboct-rtl", "fpga": "cuboct-fpga", "gpu": "cuboct-gpu",
             "ranks": "cuboct-lattice"}
-WORDS = {"ranks": ["--engine", "lattice", "--ranks", "2"], "gpus": ["--engine", "gpu", "--gpus", "2"]}
+WORDS = {"ranks": ["--engine", "lattice", "--ranks", "2"]}
 RUN = ["run", "scene.toml", "--steps", "24", "--frame-every", "6", "--frames", "xyz", "--quiet", "--out", "out"]
 CHECKPOINTS = ["--checkpoint-every", "6 steps"]
 WITHOUT = {"systemc", "rtl"}  # engines that leave no checkpoints
