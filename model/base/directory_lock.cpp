@@ -8,8 +8,12 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
+#include <system_error>
 
 #include "model/base/error.h"
 #include "model/base/output.h"
@@ -36,6 +40,22 @@ bool is_at(int file, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
+// What temporary_beside (output.h) named for a process that is no more: the kill that ended it left it.
+void remove_what_dead_ones_left(const std::string& directory) {
+  std::error_code none;
+  for (std::filesystem::directory_iterator at(directory, none), end; at != end; at.increment(none)) {
+    const std::string name = at->path().filename().string();
+    constexpr std::string_view kEnd = ".tmp";
+    if (!name.ends_with(kEnd)) continue;
+    const size_t last = name.size() - kEnd.size(), dot = name.rfind('.', last - 1);
+    if (dot == std::string::npos || dot == 0) continue;
+    pid_t process = 0;
+    const auto [stop, error] = std::from_chars(name.data() + dot + 1, name.data() + last, process);
+    if (error != std::errc() || stop != name.data() + last || process <= 0) continue;
+    if (kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(at->path(), none);
+  }
+}
+
 }  // namespace
 
 DirectoryLock::DirectoryLock(const std::string& directory, const std::string& work)
@@ -59,7 +79,8 @@ DirectoryLock::DirectoryLock(const std::string& directory, const std::string& wo
   } while (!is_at(file_, path_));
   const std::string text = fmt::format("process {}, '{}'\n", getpid(), work);
   // For people alone: on a full disk the lock holds without.
-  if (ftruncate(file_, 0) != 0 || pwrite(file_, text.data(), text.size(), 0) < 0) return;
+  static_cast<void>(ftruncate(file_, 0) == 0 && pwrite(file_, text.data(), text.size(), 0) > 0);
+  remove_what_dead_ones_left(directory);
 }
 
 DirectoryLock::~DirectoryLock() {

@@ -10,7 +10,8 @@ namespace cuboct {
 class DirectoryLock {
  public:
   // Makes the directory where there is none. Throws InputError where it cannot be made or written to, and
-  // ("DIR is in use by process 12, 'cuboct run'") where another process has it. `work`: what we are.
+  // ("DIR is in use by process 12, 'cuboct run'") where another process has it. `work`: what we are. Removes
+  // the temporary files (output.h) of processes that are no more.
   DirectoryLock(const std::string& directory, const std::string& work);
   ~DirectoryLock();  // a directory that was made for nothing goes too
   DirectoryLock(const DirectoryLock&) = delete;

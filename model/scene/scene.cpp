@@ -166,16 +166,27 @@ void read_length(const ConfigTable& table, Scene& scene) {
   }
 }
 
+// Of a stage with a length of its own that of [run] says nothing.
+std::optional<ConfigValue> planned_of(const ConfigTable& run, const StagePart* stage) {
+  auto planned = run.find("planned_steps");
+  if (&timed(run, stage) != &run) planned.reset();
+  if (stage)
+    if (auto own = stage->find("planned_steps")) planned = std::move(own);
+  return planned;
+}
+
 // s, as the keys say it, of time steps of `dt`.
-double length_of_run(const ConfigTable& table, double dt) {
+double length_of_run(const ConfigTable& run, const StagePart* stage, double dt) {
+  const ConfigTable& table = timed(run, stage);
+  if (const auto planned = planned_of(run, stage))
+    return static_cast<double>(planned->integer(0, INT64_MAX)) * dt;
   if (table.has("duration")) return table.number("duration", quantity::time, Range::positive());
-  const ConfigValue steps = table.has("planned_steps") ? table.at("planned_steps") : table.at("steps");
-  return static_cast<double>(steps.integer(0, INT64_MAX)) * dt;
+  return static_cast<double>(table.at("steps").integer(0, INT64_MAX)) * dt;
 }
 
 // A run that is cut short keeps the bits of the whole one.
-void read_planned_steps(const ConfigTable& table, const StagePart* stage, Scene& scene) {
-  const auto planned = table.find("planned_steps");
+void read_planned_steps(const ConfigTable& run, const StagePart* stage, Scene& scene) {
+  const auto planned = planned_of(run, stage);
   if (!planned) return;
   scene.planned_steps = static_cast<uint64_t>(planned->integer(0, INT64_MAX));
   if (scene.planned_steps < scene.steps)
@@ -243,7 +254,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, S
     }
     const double longest =
         automatic ? limits.automatic.known() : dt->number(quantity::time, Range::positive());
-    meet_strained_box(scene, length_of_run(timed(run, stage), longest), limits);
+    meet_strained_box(scene, length_of_run(run, stage, longest), limits);
   }
   TimeLimit limit = automatic ? limits.automatic : limits.given;
   std::string unknown;
@@ -276,7 +287,7 @@ void read_time(const ConfigTable& root, const StagePart* stage, size_t listed, S
   for (const ConfigTable* table : {&run, static_cast<const ConfigTable*>(stage)})
     if (table) table->not_both("steps", "duration");
   read_length(timed(run, stage), scene);
-  read_planned_steps(timed(run, stage), stage, scene);
+  read_planned_steps(run, stage, scene);
   const uint64_t whole = scene.steps, parts = stage ? stage->parts() : 1;
   scene.steps = (whole + parts - 1) / parts;
   const auto given = [&](const char* key) {

@@ -382,8 +382,8 @@ TEST_F(LimitsTest, MatricesAndPitchesBeyondMemory) {
   const std::string scene = file("scene.toml", block("cells = [40, 40, 40]"));
   const std::vector<std::pair<std::vector<std::string>, std::string>> commands{
       {{"stability", scene}, "256000 particles: that takes about 768 MB of memory: "},
-      {{"elastic", file("small.toml", block("cells = [18, 18, 18]"))},
-       "23328 particles: that takes about 467 MB of memory: "},
+      {{"elastic", file("small.toml", block("cells = [20, 20, 20]"))},
+       "32000 particles: that takes about 640 MB of memory: "},
       {{"pitch", scene, "--particles", "2000000"}, "--particles 2000000: that takes about "}};
   for (const auto& [words, told] : commands) {
     const Answer answer = bench_.cuboct(words, {}, kLittle);

@@ -137,6 +137,15 @@ TEST(Stage, IsPlannedForMoreStepsThanItHas) {
   EXPECT_EQ(pull.steps, 5u);
   EXPECT_DOUBLE_EQ(pull.planned_duration(), 40 * pull.rule.dt);
   EXPECT_DOUBLE_EQ(rest.planned_duration(), static_cast<double>(rest.steps) * rest.rule.dt);
+  // That of [run] is of stages without a length of their own.
+  const auto of_run = [](const std::string& stage) {
+    std::string text = read_config_text(kGrips) + "\n" + kHand;
+    const size_t run = text.find("[run]\n") + 6;
+    text.insert(run, "planned_steps = 90\n");
+    return parse_scene(text, "s.toml", {.begins = true, .stage = stage});
+  };
+  EXPECT_EQ(of_run("pull").planned_steps, 40u);
+  EXPECT_EQ(of_run("rest").planned_steps, 90u);
 }
 
 std::string refusal(const std::string& more, const std::string& stage) {
