@@ -38,13 +38,6 @@ struct Numbers {
   }
 };
 
-// The name that no constraint of the scene has.
-std::string hand_name(const std::vector<SteeredScene::Led>& led) {
-  std::string name = "hand";
-  while (std::ranges::any_of(led, [&](const auto& one) { return one.name == name; })) name += "-";
-  return name;
-}
-
 }  // namespace
 
 SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::string directory, uint64_t steps)
@@ -78,6 +71,8 @@ SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::stri
     }
   }
   own_ = wanted_;
+  while (std::ranges::any_of(scene.rule.types, [&](auto& type) { return constraint_of(type) == hand_; }))
+    hand_ += "-";
   try {
     parse_scene(text_, this->path());
   } catch (const InputError&) {
@@ -90,8 +85,8 @@ SteeredScene::SteeredScene(Input asked, std::string engine, bool real, std::stri
 std::string SteeredScene::text_of(const Stage& stage, uint64_t number, std::optional<uint64_t> done) const {
   const Numbers write{reduced_};
   std::string changes, keys;
-  const auto add = [&](const std::string& name, const std::string& keys) {
-    changes += fmt::format("{}{{ name = {}, {} }}", changes.empty() ? "" : ", ", json(name), keys);
+  const auto add = [&](const std::string& name, const std::string& says) {
+    changes += fmt::format("{}{{ name = {}, {} }}", changes.empty() ? "" : ", ", json(name), says);
   };
   const Wanted& wanted = stage.wanted;
   for (size_t k = 0; k < wanted.led.size(); ++k)
@@ -104,7 +99,7 @@ std::string SteeredScene::text_of(const Stage& stage, uint64_t number, std::opti
   if (stage.pull) {
     const Pull& pull = *stage.pull;
     const Vec3 velocity = pull.way / (static_cast<double>(pull.steps) * dt_);
-    add(hand_name(own_.led),
+    add(hand_,
         fmt::format(
             "kind = \"moved\", velocity = {}, region = {{ shape = \"sphere\", centre = {}, radius = {} }}",
             write.vector(velocity, "m/s"), write.vector(packing_[pull.particle], "m"),

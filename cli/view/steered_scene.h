@@ -82,7 +82,8 @@ class SteeredScene {
   double radius_ = 0;
   uint64_t steps_, part_ = 0, first_ = 0;
   double dt_ = 0;
-  Wanted wanted_, own_;  // own: as the scene has it
+  Wanted wanted_, own_;        // own: as the scene has it
+  std::string hand_ = "hand";  // the pull's name, which no constraint of the scene has
   std::optional<Pull> pull_;
   Stage now_{};
 };

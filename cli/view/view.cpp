@@ -238,8 +238,8 @@ void add_view(Command& app, int& exit_code) {
   command.flag("--cycles", options->cycles,
                "of a SCENE: count the machine's cycles, for the page of the run that is over");
   command.flag("--steer", options->steer,
-               "of a SCENE: the page changes imposed velocities and pulls particles by mouse; DIR then holds "
-               "the scene of stages that gives the same run again");
+               "of a SCENE: the page changes imposed velocities, gravity and damping, and the mouse pulls "
+               "particles; DIR then holds the scene of stages that gives the same run again");
   options->answer.add_to(command);
 }
 

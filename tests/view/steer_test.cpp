@@ -141,6 +141,30 @@ TEST(Steer, AChangeIsAStageOfASceneThatGivesTheSameRun) {
   expect_the_same_run(out, again, 5);
 }
 
+// A scene may have a constraint of the hand's own name, also one that holds.
+TEST(Steer, TheHandTakesANameOfItsOwn) {
+  const Bench bench(false);
+  const std::string out = bench.path("run"), scene = bench.path("scene.toml");
+  std::string text = contents(CUBOCT_SOURCE_DIR "/scenes/coupon.toml");
+  const std::string fixed = "name = \"fixed\"";
+  text.replace(text.find(fixed), fixed.size(), "name = \"hand\"");
+  std::ofstream(scene) << text;
+  std::string pulled;
+  const Answer ran = bench.cuboct(
+      {"view", scene, "--no-open", "--steer", "--steps", "1000000", "--frame-every", "100", "--out", out},
+      [&](pid_t) {
+        const Address at = address_in(contents(bench.path("out")));
+        if (at.port == 0) return false;
+        if (pulled.empty()) pulled = ask(at, "steer/pull/2000/1e-3/0/0/1e-5/100", "POST");
+        const std::string news = ask(at, "news");
+        if (!has(news, "\"part\":1,")) ask(at, "command/end", "POST");
+        return has(news, "\"state\":\"ended\"");
+      });
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(has(pulled, " 204 ")) << pulled;
+  EXPECT_TRUE(has(stages_in(out + "/scene.toml"), "{ name = \"hand-\", kind = \"moved\""));
+}
+
 // Without a change the run is that of the scene.
 TEST(Steer, WithoutAChangeNothingChanges) {
   const Bench bench(false);
