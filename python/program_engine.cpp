@@ -2,14 +2,15 @@
 #include "python/program_engine.h"
 
 #include <fmt/format.h>
+#include <optional>
 
 #include <utility>
 
-#include "cli/run/engine_run.h"
 #include "cli/run/outputs.h"
 #include "hw/engine/engine_kind.h"
 #include "model/base/interrupt.h"
 #include "model/run/start.h"
+#include "python/program_run.h"
 
 namespace cuboct::python {
 namespace {
@@ -118,18 +119,12 @@ void ProgramEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
   request.hash_every = 0;
   request.log = LogRows::quiet;
   request.keep = [&](const RunState& frame) { last = std::get<State>(frame); };
-  Recorded run;
-  try {
-    run =
-        EngineRun(engine_, input_, now, options_, std::move(request), scratch_.path("run.h5"), true).finish();
-  } catch (const std::runtime_error&) {
-    if (interrupted()) return;  // before the program began: the state is that from before
-    throw;
-  }
-  if (!run.trouble.empty()) throw InputError(run.trouble);
-  if (run.interrupted && !interrupted())
+  const std::optional<Recorded> run =
+      run_program(engine_, input_, now, options_, std::move(request), scratch_.path("run.h5"));
+  if (!run) return;
+  if (run->interrupted && !interrupted())
     throw std::runtime_error(fmt::format("the {} engine ended after step {} of {}", engine_,
-                                         state_.step + run.trace.steps(), state_.step + steps));
+                                         state_.step + run->trace.steps(), state_.step + steps));
   const uint64_t before = state_.step;
   StopReason lost;
   if (last && !take(std::move(*last), plan.lattice, lost)) {
@@ -138,7 +133,7 @@ void ProgramEngine::advance(uint64_t steps, std::vector<uint64_t>*) {
     advance(steps - steps / 2, nullptr);
     return;
   }
-  if (run.trace.stop) throw StepError(later(*run.trace.stop, before, plan.lattice, setup_.plan.lattice));
+  if (run->trace.stop) throw StepError(later(*run->trace.stop, before, plan.lattice, setup_.plan.lattice));
 }
 
 }  // namespace cuboct::python

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "cli/run/engine_run.h"
 #include "cli/run/outputs.h"
 #include "emu/lattice/run.h"
 #include "hw/engine/engine_kind.h"
@@ -17,6 +17,7 @@
 #include "model/base/interrupt.h"
 #include "model/program/rule_program.h"
 #include "model/rules/rounds_rule.h"
+#include "python/program_run.h"
 
 namespace cuboct::python {
 namespace {
@@ -114,19 +115,13 @@ void ProgramIntegers::advance(uint64_t steps, std::vector<uint64_t>* hashes) {
   request.steps = request.hash_every = steps;
   request.frames = {steps};
   request.log = LogRows::quiet;
-  Recorded run;
-  try {
-    run =
-        EngineRun(engine_, input_, now, options_, std::move(request), scratch_.path("run.h5"), true).finish();
-  } catch (const std::runtime_error&) {
-    if (interrupted()) return;  // before the program began: the state is that from before
-    throw;
-  }
-  if (!run.trouble.empty()) throw InputError(run.trouble);
-  if (run.interrupted && !interrupted())
+  const std::optional<Recorded> run =
+      run_program(engine_, input_, now, options_, std::move(request), scratch_.path("run.h5"));
+  if (!run) return;
+  if (run->interrupted && !interrupted())
     throw std::runtime_error(fmt::format("the {} engine ended after step {} of {}", engine_,
-                                         state_.step + run.trace.steps(), state_.step + steps));
-  const Trace& trace = run.trace;
+                                         state_.step + run->trace.steps(), state_.step + steps));
+  const Trace& trace = run->trace;
   const bool moved = !trace.bodies.empty() && trace.bodies.back().step > 0;
   if (moved &&
       !take(trace.bodies.back(), trace.bonds.value_or(std::vector<uint64_t>()), trace.state_hash.back())) {

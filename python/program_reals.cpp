@@ -5,15 +5,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "cli/run/engine_run.h"
 #include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/rules/rounds_rule.h"
 #include "model/run/reference_kind.h"
 #include "model/run/rounds_run.h"
+#include "python/program_run.h"
 
 namespace cuboct::python {
 namespace {
@@ -80,18 +81,12 @@ void ProgramReals::advance(uint64_t steps, std::vector<uint64_t>*) {
   request.hash_every = 0;
   request.log = LogRows::quiet;
   request.checkpoint.path = next;
-  Recorded run;
-  try {
-    run =
-        EngineRun(engine_, input_, now, options_, std::move(request), scratch_.path("run.h5"), true).finish();
-  } catch (const std::runtime_error&) {
-    if (interrupted()) return;  // before the program began: the state is that from before
-    throw;
-  }
-  if (!run.trouble.empty()) throw InputError(run.trouble);
-  const Trace& trace = run.trace;
+  const std::optional<Recorded> run =
+      run_program(engine_, input_, now, options_, std::move(request), scratch_.path("run.h5"));
+  if (!run) return;
+  const Trace& trace = run->trace;
   if (!trace.stop) {
-    if (!run.left_checkpoint || (trace.steps() < target && !interrupted()))
+    if (!run->left_checkpoint || (trace.steps() < target && !interrupted()))
       throw std::runtime_error(
           fmt::format("the {} engine ended after step {} of {}", engine_, trace.steps(), target));
     move_checkpoint(next, kept);
