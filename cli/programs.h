@@ -40,12 +40,10 @@ std::pair<Command, std::shared_ptr<Options>> add_command(Command& app, std::stri
                                                          Run run) {
   Command command = add_command(app, name);
   auto options = std::make_shared<Options>();
-  command.callback([options, run, &exit_code] {
-    if constexpr (std::is_void_v<decltype(run(*options))>)
-      run(*options);
-    else
-      exit_code = run(*options);
-  });
+  if constexpr (std::is_void_v<decltype(run(*options))>)
+    command.callback([options, run] { run(*options); });
+  else
+    command.callback([options, run, &exit_code] { exit_code = run(*options); });
   return {command, options};
 }
 

@@ -16,7 +16,7 @@ function(cuboct_headers name)
   target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
   target_precompile_headers(${name} PRIVATE ${cuboct_common} ${ARGN})
   # ccache wants to see what was precompiled.
-  target_compile_options(${name} PRIVATE -fpch-preprocess)
+  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess> "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
 endfunction()
 
 # What waits for people and files, or runs once, compiles a third faster with less of the optimiser. What it computes has the same
@@ -24,7 +24,7 @@ endfunction()
 function(cuboct_lightly_optimised headers)
   foreach(target ${headers} ${ARGN})
     if(TARGET ${target})
-      target_compile_options(${target} PRIVATE "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1;-Wno-maybe-uninitialized>")
+      target_compile_options(${target} PRIVATE "$<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>" "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-maybe-uninitialized>")
       set_target_properties(${target} PROPERTIES CUBOCT_HEADERS ${headers})
     endif()
   endforeach()
@@ -56,7 +56,7 @@ function(cuboct_precompile directory)
     target_precompile_headers(${target} REUSE_FROM ${from})
     # GCC 12 takes what was precompiled for the project's own, and its false alarms about std::string come through.
     target_compile_options(${target} PRIVATE
-      "$<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>")
+      "$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fpch-preprocess;-Wno-array-bounds;-Wno-restrict;-Wno-stringop-overflow;-Wno-stringop-overread>")
   endforeach()
   get_property(parts DIRECTORY ${directory} PROPERTY SUBDIRECTORIES)
   foreach(part ${parts})

@@ -17,7 +17,7 @@ function(cuboct_unity directory)
       continue()
     endif()
     # A class of a file may have members of types that the file has for itself: GCC takes the file for a header.
-    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
     set(last "")
     foreach(source ${sources})

@@ -256,6 +256,10 @@ void Bench::fail(uint32_t node, const std::string& text) {
   timeline_.over = true;
 }
 
+void Bench::tell_all(const Control& control) {
+  for (size_t n = 0; n < control_.size(); ++n) control_[n].write(control);
+}
+
 // Writes the controls for the next cycle.
 void Bench::host() {
   if (timeline_.over) return;
@@ -263,7 +267,7 @@ void Bench::host() {
   control.reset_n = true;
   switch (state_) {
     case Host::reset:
-      for (auto& c : control_) c.write(control);
+      tell_all(control);
       state_ = Host::load;
       return;
     case Host::load:
@@ -276,14 +280,14 @@ void Bench::host() {
     case Host::start:
       control.start = true;
       control.steps = static_cast<uint32_t>(options_.steps);
-      for (auto& c : control_) c.write(control);
+      tell_all(control);
       timeline_.base = timeline_.edge + 2;  // the next cycle is the last in IDLE
       begin_ = now();
       state_ = Host::run;
       return;
     case Host::run:
       if (timeline_.edge + 1 == timeline_.base)
-        for (auto& c : control_) c.write(control);
+        tell_all(control);
       if (!timeline_.running()) return;
       if (interrupted()) collector_.break_off(timeline_.cycle());
       if (collector_.done()) {

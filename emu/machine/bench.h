@@ -93,7 +93,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   sc_core::sc_in<bool> clk_i{"clk_i"};
 
   bool over() const { return timeline_.over; }
-  const Trace& trace() const { return collector_.trace(); }  // as Collector::trace
+  const Trace& collected() const { return collector_.trace(); }
   double seconds() const;                                    // host time of the steps so far
   // After `simulate`; throws std::runtime_error for a run that was stuck or whose node failed.
   RunResult take_result();
@@ -108,6 +108,7 @@ class Bench : public sc_core::sc_module, private Monitor {
   void expect(NodeModule& node) override { expected_.push_back(&node); }
   void evaluate() override;
   void host();
+  void tell_all(const Control& control);
   void tick() { ++timeline_.edge; }
   void wire(uint32_t node, int face);
 

@@ -39,7 +39,7 @@ class MachineRun {
   const State& state() const;
 
  private:
-  const Trace& trace() const { return result_ ? *result_ : bench_.trace(); }
+  const Trace& trace() const { return result_ ? *result_ : bench_.collected(); }
   // Clocks the bench until all nodes have shown the state after `step`, or to its end.
   void reach(uint64_t step);
 

@@ -53,10 +53,12 @@ void ForceEngine::meet_slots(Stream& stream, const Candidate& c, uint32_t self) 
   const uint64_t lane_mask = ~uint64_t{0} >> (64 - lanes_);
   stream.record.push_back(&c);
   PlanarMask met;
-  if (bonded_)
-    for (const auto& [id, slot] : std::ranges::equal_range(stream.partners, c.id, {}, kId)) met.set(slot);
-  else
+  if (bonded_) {
+    auto partner = std::ranges::lower_bound(stream.partners, c.id, {}, kId);
+    for (; partner != stream.partners.end() && partner->first == c.id; ++partner) met.set(partner->second);
+  } else {
     met = test_(stream.own, c.x);
+  }
   if (self < own_.size()) met.clear(self);
   for (uint32_t p = 0; p < stream.passes; ++p) stream.mask.push_back(met.from(p * lanes_) & lane_mask);
 }

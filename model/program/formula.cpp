@@ -140,9 +140,10 @@ class Compiler {
   }
 
   Value binary(const Expression& e) {
-    if (e.text == "and" || e.text == "or")
-      return truth(
-          graph_.add(e.text == "and" ? RealOp::both : RealOp::either, truth_of(e.of[0]), truth_of(e.of[1])));
+    if (e.text == "and" || e.text == "or") {
+      const NodeId second = truth_of(e.of[1]), first = truth_of(e.of[0]);
+      return truth(graph_.add(e.text == "and" ? RealOp::both : RealOp::either, first, second));
+    }
     if (e.text == "^") return power(e);
     const Value a = value(e.of[0]), b = value(e.of[1]);
     for (const Value& v : {a, b})

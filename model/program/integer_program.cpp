@@ -160,7 +160,7 @@ class Program {
     int step = b.input(graph::Source::step, 0, 0, {0, kMostSteps});
     if (rule_.first_step > 0) step = b.add(step, b.constant(static_cast<int64_t>(rule_.first_step)));
     const int drawn = b.noise(own, other, step, stream, graph::kNoiseBits);
-    const int odd = b.named(b.add(b.shl(drawn, 1), b.constant(1)), "noise");
+    const int one = b.constant(1), odd = b.named(b.add(b.shl(drawn, 1), one), "noise");
     return Integers::scaled(odd, graph::kNoiseBits, std::ldexp(graph::kNoiseUnit, graph::kNoiseBits));
   }
   Scaled velocity(Builder& b, graph::Source source, uint32_t axis) const {
@@ -175,8 +175,8 @@ class Program {
   Scaled relative_velocity(Builder& b, uint32_t axis, int counts) const {
     if (static_cast<int>(axis) >= base_.axes) return Scaled::of(0);
     const auto a = static_cast<int>(axis);
-    const int apart = b.sub(graph::read_velocity(b, out_.program, graph::Source::other_v, a),
-                            graph::read_velocity(b, out_.program, graph::Source::own_v, a));
+    const int own = graph::read_velocity(b, out_.program, graph::Source::own_v, a);
+    const int apart = b.sub(graph::read_velocity(b, out_.program, graph::Source::other_v, a), own);
     const int w = b.check(b.round(apart, base_.w_shift), base_.widths.relative_velocity_bits,
                           Fault::relative_velocity, counts);
     return Integers::scaled(w, base_.widths.relative_velocity_frac, base_.edges()[a] / base_.dt);

@@ -169,7 +169,8 @@ Scaled Integers::select(const Scaled& truth, const Scaled& a, const Scaled& b) {
     int exponent = 0;
     std::frexp(larger, &exponent);
     const int frac = kFactor - exponent;
-    return {b_.select(truth.node, known(a.number, 1, frac).node, known(b.number, 1, frac).node), 0, frac, 1};
+    const int other = known(b.number, 1, frac).node, one = known(a.number, 1, frac).node;
+    return {b_.select(truth.node, one, other), 0, frac, 1};
   }
   const auto [x, y] = alike(a, b);
   return {b_.select(truth.node, x.node, y.node), 0, x.frac, x.unit};

@@ -100,43 +100,63 @@ Scaled Lowering::made(NodeId id, double unit) {
     return bond_->threshold(
         [&](const RealRange& r2, size_t length) { return certain(radial_->over(id, r2, length)); });
   if (of_r(id) && !is_truth(node.op)) return table({{id, false}}, unit);
-  const auto of = [&](size_t k, double u = 0) { return value(node.of[k], u); };
+  const auto of = [&](size_t k) { return value(node.of[k], 0); };
   switch (node.op) {
     case RealOp::input:
       return input_(node.input);
-    case RealOp::add:
-      return integers_.add(of(0, unit), of(1, unit));
     case RealOp::subtract:
       if (is_relative(node)) return relative_(graph_.at(node.of[0]).input.index);
-      return integers_.subtract(of(0, unit), of(1, unit));
+      [[fallthrough]];
+    case RealOp::add:
+      return of_several(node, unit);
     case RealOp::multiply:
     case RealOp::divide:
     case RealOp::negate:
       return product(id, unit);
     case RealOp::absolute:
       return integers_.absolute(of(0));
-    case RealOp::least:
-    case RealOp::most:
-      return integers_.chosen(node.op == RealOp::least, of(0), of(1));
-    case RealOp::below:
-    case RealOp::at_most:
-      return integers_.below(of(0), of(1), node.op == RealOp::at_most);
-    case RealOp::equal:
-      return integers_.equal(of(0), of(1));
-    case RealOp::both:
-      return integers_.both(of(0), of(1));
-    case RealOp::either:
-      return integers_.either(of(0), of(1));
     case RealOp::inverse:
       return integers_.inverse(of(0));
+    case RealOp::least:
+    case RealOp::most:
+    case RealOp::below:
+    case RealOp::at_most:
+    case RealOp::equal:
+    case RealOp::both:
+    case RealOp::either:
     case RealOp::select:
-      return integers_.select(of(0), of(1), of(2));
+      return of_several(node, 0);
     case RealOp::curve:
     case RealOp::curve_slope:
       return tabled(node, of(0));
     case RealOp::power:
     default:
       return of_one(node, of(0));
+  }
+}
+
+Scaled Lowering::of_several(const RealNode& node, double unit) {
+  std::array<Scaled, 3> of;
+  for (auto k = static_cast<size_t>(arity(node.op)); k-- > 0;) of[k] = value(node.of[k], unit);
+  switch (node.op) {
+    case RealOp::add:
+      return integers_.add(of[0], of[1]);
+    case RealOp::subtract:
+      return integers_.subtract(of[0], of[1]);
+    case RealOp::least:
+    case RealOp::most:
+      return integers_.chosen(node.op == RealOp::least, of[0], of[1]);
+    case RealOp::below:
+    case RealOp::at_most:
+      return integers_.below(of[0], of[1], node.op == RealOp::at_most);
+    case RealOp::equal:
+      return integers_.equal(of[0], of[1]);
+    case RealOp::both:
+      return integers_.both(of[0], of[1]);
+    case RealOp::either:
+      return integers_.either(of[0], of[1]);
+    default:
+      return integers_.select(of[0], of[1], of[2]);
   }
 }
 

@@ -131,8 +131,8 @@ class Understanding {
                        NodeId at, bool of_slope) {
     NodeId value = graph.curve(*tables.back(), at, of_slope);
     for (size_t k = tables.size() - 1; k-- > 0;) {
-      const NodeId is = graph.add(RealOp::equal, graph.input(element),
-                                  graph.constant(std::ldexp(1.0, static_cast<int>(k))));
+      const NodeId code = graph.constant(std::ldexp(1.0, static_cast<int>(k)));
+      const NodeId is = graph.add(RealOp::equal, graph.input(element), code);
       value = graph.add(RealOp::select, is, graph.curve(*tables[k], at, of_slope), value);
     }
     return value;
@@ -149,8 +149,8 @@ class Understanding {
     const size_t count = potential.elements.size();
     NodeId value = pair_of(graph, *potential.pair.back(), r, of_slope);
     if (count == 1) return value;
-    const NodeId both =
-        graph.add(RealOp::add, graph.input(Source::own_element), graph.input(Source::other_element));
+    const NodeId other = graph.input(Source::other_element), own = graph.input(Source::own_element);
+    const NodeId both = graph.add(RealOp::add, own, other);
     for (size_t i = 0; i + 1 < count; ++i)
       for (size_t j = i; j < count; ++j) {
         const double code = std::ldexp(1.0, static_cast<int>(i)) + std::ldexp(1.0, static_cast<int>(j));

@@ -125,11 +125,13 @@ TEST_F(RuleEmit, RefusesAHostsLinkOfARuleThatReadsTheStep) {
   const Case c = case_of("one", hot(kFourRounds), {}, 1);
   for (const auto& [board, said] :
        {std::pair{BoardChoice{.name = "ulx3s"}, "--board ulx3s: "},
-        std::pair{BoardChoice{.name = "", .bus = "wishbone"}, "--bus wishbone: "}})
+        std::pair{BoardChoice{.name = "", .bus = "wishbone"}, "--bus wishbone: "}}) {
+    const BoardChoice& choice = board;
     EXPECT_TRUE(refused_with<InputError>([&] {
-                  with_places(c.scene, {}, [&] { check_emission(c.setup.plan, {.board = board}); });
+                  with_places(c.scene, {}, [&] { check_emission(c.setup.plan, {.board = choice}); });
                 }).starts_with(std::string("rule.toml:10:1: ") + said + "the rule '"))
         << said;
+  }
   for (const char* bus : {"axi4lite", "wishbone"})
     check_emission(case_of("one", hot(kOneRound), {}, 1).setup.plan, {.board = {.name = "", .bus = bus}});
 }

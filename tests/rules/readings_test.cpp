@@ -128,7 +128,8 @@ TEST(ReadingsOfText, TheLargestSpeedIsThatOfTheStates) {
   EXPECT_EQ(golden.largest_speed(), 0);
   golden.advance(20, nullptr);
   double most = 0;
-  for (const Particle& p : std::get<State>(golden.integers()).particles)
+  const auto state = golden.integers();
+  for (const Particle& p : std::get<State>(state).particles)
     for (const int64_t v : p.v) most = std::max(most, std::ldexp(std::abs(static_cast<double>(v)), -38));
   EXPECT_GT(most, 0);
   EXPECT_NEAR(golden.largest_speed(), most, 1e-12);
