@@ -121,6 +121,7 @@ int explore(const ExploreOptions& options) {
       return run_budget(study, runner.truth(), {options.error, options.figure, out, options.jobs},
                         options.answer);
     runner.run();
+    if (runner.gpu_jobs() > 0) options.answer.say("points on the GPU: {} at once\n", runner.gpu_jobs());
     if (!runner.left_out().empty())
       options.answer.say("{}\n  hint: --add FILE takes them from another machine's results.db\n",
                          line_text(runner.left_out()));

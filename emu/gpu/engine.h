@@ -131,4 +131,8 @@ struct Device {
 // Empty where there is no driver, or no device; `why` then says which.
 std::vector<Device> find_devices(std::string* why = nullptr);
 
+// Before the first device is used: engines of several threads will go on at once. Each keeps to one thread,
+// and all share the devices and their memory. `sleeping`: a thread that waits leaves its core to others.
+void share_devices(bool sleeping);
+
 }  // namespace cuboct::gpu

@@ -37,15 +37,16 @@ std::vector<Found<Policy>> Machine<Policy>::read_probed() {
   if (probed_ == 0) return all;
   for (auto& slab : slabs_) {
     Slab& s = *slab;
-    s.found_here.zero(s.stream);
+    if (!alone()) s.found_here.zero(s.stream);
     Policy::with_variant(s.rule->view(), [&](auto variant) {
       const ReadProbed<Policy, decltype(variant)> f{s.rule->view(), grid(s),        at(s, at_),
                                                     list(s),        s.cell.data(),  s.id.data(),
                                                     s.slot.data(),  s.found.data(), s.found_here.data()};
       for_each_cached(s.stream, 0, s.own, options_.block, s.rule->cache(), s.rule->cache_words(), f);
     });
+    auto found = s.found.host(s.stream, 0, probed_);
+    if (alone()) return found;
     const auto here = s.found_here.host(s.stream, 0, probed_);
-    const auto found = s.found.host(s.stream, 0, probed_);
     for (size_t k = 0; k < probed_; ++k)
       if (here[k]) all[k] = found[k];
   }

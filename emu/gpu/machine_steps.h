@@ -133,14 +133,16 @@ bool Machine<Policy>::run_together(uint32_t steps, bool hash) {
   Policy::with_variant(s.rule->view(), [&](auto variant) {
     const StepsTogether<Policy, decltype(variant)> f{filled<Step<Policy, decltype(variant), false>>(s),
                                                      s.id.data(), hash};
-    const auto go_on = [&](auto lanes) {
+    const auto go_on = [&](auto lanes, bool has_choice) {
       return go_on_together<decltype(lanes)>(s.stream, s.own, options_.block, s.rule->cache(),
-                                             s.rule->cache_words(), steps, s.meeting, s.hashes.data(), f);
+                                             s.rule->cache_words(), steps, s.meeting, s.hashes.data(),
+                                             has_choice, f);
     };
-    // A device that does not hold so many threads may hold those of fewer lanes.
-    ran = particles_ <= kMostOfEightLanes && go_on(PairLanes<8>());
+    // A device that does not hold so many threads, or is shared, may hold those of fewer lanes.
+    ran = particles_ <= kMostOfEightLanes && go_on(PairLanes<8>(), !kDoubles);
     if constexpr (!kDoubles)
-      ran = ran || (particles_ <= kMostOfFourLanes && go_on(PairLanes<4>())) || go_on(PairLanes<2>());
+      ran = ran || (particles_ <= kMostOfFourLanes && go_on(PairLanes<4>(), true)) ||
+            go_on(PairLanes<2>(), false);
   });
   if (ran) near_age_ = kNever;  // steps over near lists go on with new ones
   return ran;
@@ -152,7 +154,7 @@ void Machine<Policy>::start_batch(uint32_t steps, bool hash) {
     for_each(slab->stream, 0, 1, 32, ResetControl{slab->control.data()});
     if (hash) slab->hashes.zero(slab->stream);
   }
-  if (alone() && particles_ <= options_.together && run_together(steps, hash)) return wait_for_all();
+  if (alone() && particles_ <= options_.together && run_together(steps, hash)) return;
   // Another slab's first step may write into this one's memory.
   if (!alone()) wait_for_all();
   // A graph pays where it is launched several times: once a list has lived for a while.

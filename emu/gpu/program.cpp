@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <csignal>
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
 
 #include "emu/gpu/bench/power.h"
 #include "emu/gpu/rates.h"
@@ -94,7 +96,8 @@ class Joules {
 
 class GpuProgram : public EngineProgram {
  public:
-  GpuProgram() {
+  explicit GpuProgram(bool among_many) : among_many_(among_many) {
+    silent = among_many;
     name = "cuboct-gpu";
     description = "Runs a scene on NVIDIA GPUs, with the bits of the golden engine or in real numbers";
     abilities.forces = abilities.checkpoints = abilities.text = abilities.any_cells = true;
@@ -134,6 +137,7 @@ class GpuProgram : public EngineProgram {
   void begin(Scene& scene) override {
     found_ = choose_devices(gpus_, devices_given_, choice_.engine);
     for (const Device& device : found_) names_.push_back(device.name);
+    if (among_many_) take_room(scene);
     if (!start_.empty()) start_from(start_, scene);
   }
   EngineKind kind(Scene& scene, const Plan& plan, const ProgramOptions&) override;
@@ -147,6 +151,11 @@ class GpuProgram : public EngineProgram {
   }
 
  private:
+  void take_room(const Scene& scene);
+
+  bool among_many_;
+  std::shared_lock<std::shared_mutex> beside_others_;
+  std::unique_lock<std::shared_mutex> alone_;
   std::string start_, precision_ = "fixed", rule_code_ = "automatic";
   GpuChoice choice_;
   int gpus_ = 0, repeats_ = 0;
@@ -158,7 +167,30 @@ class GpuProgram : public EngineProgram {
   std::optional<Joules> meter_;
 };
 
+// What a run of many scenes cannot have.
+void refuse_among_many(const std::string& option) {
+  throw InputError(option + " is of a run by itself, not of one among many");
+}
+
+void GpuProgram::take_room(const Scene& scene) {
+  static std::shared_mutex room;
+  if (scene.body.size() <= kMostTogether && scene.rule.rounds == nullptr)
+    beside_others_ = std::shared_lock(room);
+  else
+    alone_ = std::unique_lock(room);
+}
+
 bool GpuProgram::prepare(ProgramOptions& options) {
+  if (among_many_) {
+    const bool several = gpus_ > 1 || choice_.engine.devices.size() > 1;
+    for (const auto& [given, option] : {std::pair{list_, "--list"},
+                                        {options.bench, "--bench"},
+                                        {joules_, "--joules"},
+                                        {pause_after_ > 0, "--pause-after"},
+                                        {several, "more than one device"}})
+      if (given) refuse_among_many(option);
+    if (options.run.log == LogRows::off) options.run.log = LogRows::quiet;
+  }
   if (list_) {
     for (const Device& device : devices_here()) fmt::print("{} {}\n", device.ordinal, device.name);
     return true;
@@ -218,7 +250,12 @@ void GpuProgram::print_bench(const Scene& scene, const Plan& plan, const Recorde
 }  // namespace
 
 int run_gpu_program(int argc, char** argv) {
-  GpuProgram program;
+  GpuProgram program(false);
+  return run_program(argc, argv, program);
+}
+
+int run_among_many(int argc, char** argv) {
+  GpuProgram program(true);
   return run_program(argc, argv, program);
 }
 

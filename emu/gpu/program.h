@@ -9,4 +9,8 @@ namespace cuboct::gpu {
 // line is wrong, or there is no device.
 int run_gpu_program(int argc, char** argv);
 
+// The same of a run that goes on beside others of this process (emu/gpu/many.h). It says nothing but errors.
+// Scenes of more than kMostTogether particles, and rules of text, wait until they have the device alone.
+int run_among_many(int argc, char** argv);
+
 }  // namespace cuboct::gpu

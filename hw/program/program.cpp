@@ -70,14 +70,16 @@ void check(const Parsed& parsed) {
 int tell(EngineProgram& program, const Parsed& parsed, const Scene& scene, const Plan& plan,
          const Recorded& run) {
   const Trace& trace = run.trace;
-  if (parsed.options.bench)
-    program.print_bench(scene, plan, run);
-  else
-    program.print_end(plan, trace);
-  for (const Finding& finding : trace.findings) fmt::print("warning: {}\n", line_text(finding.text));
-  if (run.interrupted && !trace.stop)
-    fmt::print("interrupted after step {}{}\n", trace.steps(),
-               run.left_checkpoint ? "; the same command with --resume goes on" : "");
+  if (!program.silent) {
+    if (parsed.options.bench)
+      program.print_bench(scene, plan, run);
+    else
+      program.print_end(plan, trace);
+    for (const Finding& finding : trace.findings) fmt::print("warning: {}\n", line_text(finding.text));
+    if (run.interrupted && !trace.stop)
+      fmt::print("interrupted after step {}{}\n", trace.steps(),
+                 run.left_checkpoint ? "; the same command with --resume goes on" : "");
+  }
   if (trace.stop && parsed.error.empty())
     fmt::print(stderr, "{}: {}\n", line_text(parsed.options.scene), line_text(trace.stop->text));
   return run.interrupted || trace.stop || !trace.findings.empty() ? 1 : 0;

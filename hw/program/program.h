@@ -42,6 +42,7 @@ class EngineProgram {
   std::string name;         // "cuboct-systemc"
   std::string description;  // one line
   ProgramAbilities abilities;
+  bool silent = false;  // prints errors alone: who started the run reads its trace
 
   virtual void add_options(Command&) {}
   // Before the scene is read. Whether it has done all there is to do.

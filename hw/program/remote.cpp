@@ -37,6 +37,10 @@ Remote::Remote(RemoteRun run) : run_(std::move(run)) {
 
 void Remote::start(std::vector<std::string> arguments) {
   const Streams streams = run_.quiet ? Streams{file(".said"), file(".errors")} : Streams{};
+  if (run_.elsewhere) {
+    words_ = std::move(arguments);
+    return;
+  }
   if (!over_mpi()) {
     process_.emplace(run_.program, arguments, false, streams);
     return;
@@ -66,11 +70,12 @@ bool Remote::take_frame() { return frames_ && frames_->receive(run_.request.keep
 
 void Remote::wait() {
   const auto begun = [this] { return !over_mpi() || fs::exists(file(".begun")); };
-  const int code = process_->wait(begun, [this] { return take_frame(); });
+  const int code =
+      run_.elsewhere ? run_.elsewhere(words_) : process_->wait(begun, [this] { return take_frame(); });
   while (take_frame()) {
   }
   const std::string name = over_mpi() ? "mpirun" : fs::path(run_.program).filename().string();
-  const std::string said = run_.quiet ? errors() : "";
+  const std::string said = run_.quiet && process_ ? errors() : "";
   std::optional<InputError> error;
   if (fs::exists(file(".error"))) error = read_error(file(".error"));
   for (const char* ending : {".steps", ".begun", ".errors", ".error"}) fs::remove(file(ending));

@@ -2,6 +2,7 @@
 // A run in an engine's program, which leaves a trace.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct RemoteRun {
   std::string scene_path{};        // of which `scene` is a copy; empty: of none
   bool quiet = false;              // the program's words are kept, else its table on stderr is shown
   RunRequest request{};
+  // Runs these words in a program that is there, and gives their exit code; empty: in one of its own.
+  std::function<int(const std::vector<std::string>&)> elsewhere{};
 };
 
 class Remote {
@@ -51,6 +54,7 @@ class Remote {
   RemoteRun run_;
   std::optional<FrameReceiver> frames_;
   std::optional<Process> process_;
+  std::vector<std::string> words_;  // of a run elsewhere
   std::string trouble_;
 };
 

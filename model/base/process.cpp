@@ -37,7 +37,7 @@ struct Child {
   char** arguments;
   char** environment;
   bool apart;
-  const char *out, *err;
+  const char *out, *err, *in;
   pid_t parent;
 };
 
@@ -45,7 +45,7 @@ struct Child {
 [[noreturn]] void become(const Child& child, volatile int& error) {
   const auto send = [](int stream, const char* to) {
     if (*to == 0) return true;
-    const int file = open(to, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    const int file = open(to, stream == STDIN_FILENO ? O_RDONLY : O_WRONLY | O_CREAT | O_TRUNC, 0666);
     const bool sent = file >= 0 && dup2(file, stream) >= 0;
     if (file >= 0 && file != stream) close(file);
     return sent;
@@ -53,7 +53,7 @@ struct Child {
   // No program outlives the one that started it, however that ends.
   if (prctl(PR_SET_PDEATHSIG, child.apart ? SIGTERM : SIGKILL) == 0 && getppid() == child.parent &&
       (!child.apart || setpgid(0, 0) == 0) && send(STDOUT_FILENO, child.out) &&
-      send(STDERR_FILENO, child.err))
+      send(STDERR_FILENO, child.err) && send(STDIN_FILENO, child.in))
     execvpe(child.program, child.arguments, child.environment);
   error = errno;
   _exit(127);
@@ -111,8 +111,8 @@ Process::Process(const std::string& program, const std::vector<std::string>& arg
   std::vector<char*> environment;
   for (std::string& variable : given) environment.push_back(variable.data());
   environment.push_back(nullptr);
-  const Child child{program.c_str(),     argv.data(), environment.data(), apart, streams.out.c_str(),
-                    streams.err.c_str(), getpid()};
+  const Child child{program.c_str(),     argv.data(),         environment.data(), apart,
+                    streams.out.c_str(), streams.err.c_str(), streams.in.c_str(), getpid()};
   const int error = start(child, pid_);
   if (error != 0) {
     pid_ = -1;

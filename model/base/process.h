@@ -10,9 +10,9 @@
 
 namespace cuboct {
 
-// Where a program's words go; an empty name: where ours go.
+// Where a program's words go, and where it reads; an empty name: where ours do.
 struct Streams {
-  std::string out = "/dev/null", err = "";
+  std::string out = "/dev/null", err = "", in = "";
 };
 
 class Process {

@@ -224,8 +224,12 @@ class Writer {
     start();
     Handle properties(H5Pcreate(H5P_FILE_CREATE), H5Pclose, error_ + "HDF5 property list");
     check(H5Pset_obj_track_times(properties, false), "file");
+    // Nobody opens a temporary file. A lock would outlast its name: a program that another thread starts
+    // meanwhile has the descriptor too, and keeps readers away until it ends.
+    Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, error_ + "HDF5 property list");
+    check(H5Pset_file_locking(access, false, true), "file");
     errno = 0;
-    const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, H5P_DEFAULT);
+    const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, access);
     return Handle(id, H5Fclose, error_ + std::strerror(errno), &broken_);
   }
 

@@ -17,12 +17,6 @@
 namespace cuboct::study {
 namespace {
 
-std::string program() {
-  std::string path = beside(std::ranges::find_if(engines(), &EngineRow::devices)->program);
-  if (path.empty()) throw InputError("no program cuboct-gpu beside this one");
-  return path;
-}
-
 // dt to its last bit, and what else of the run is the study's.
 std::string scene_text(const Case& c, const GpuRequest& request) {
   const std::string dt = is_reduced({"scene", c.scene_text, "", ""}) ? fmt::format("{}", request.dt)
@@ -44,7 +38,7 @@ const char* precision_of(Arithmetic arithmetic) {
 // A run in a directory of its own. What the program says is kept from the terminal.
 class Job {
  public:
-  Job(const Case& c, const Body& start, const GpuRequest& request,
+  Job(const Case& c, const Body& start, const GpuRequest& request, GpuRuns* runs,
       const std::vector<std::string>& more = {}) {
     write_text(path("scene.toml"), scene_text(c, request));
     write_text(path("arch.toml"), c.arch_text);
@@ -52,7 +46,7 @@ class Job {
     body.engine = "study";
     body.bodies.push_back({0, start.x, start.v, {}, {}});
     write_trace(path("start.h5"), body);
-    RemoteRun run{program(), path("scene.toml"), path("arch.toml"), path("trace.h5")};
+    RemoteRun run{gpu_program(), path("scene.toml"), path("arch.toml"), path("trace.h5")};
     run.scene_path = c.scene.path;  // files that it names lie there
     run.own = {"--start", path("start.h5"), "--precision", precision_of(c.settings.arithmetic)};
     run.own.insert(run.own.end(), more.begin(), more.end());
@@ -63,12 +57,14 @@ class Job {
     run.request.forces = request.forces;
     run.request.integers = c.settings.arithmetic == Arithmetic::fixed;
     run.request.hash_every = 0;  // work that nobody reads here
+    if (runs) run.elsewhere = [runs](const std::vector<std::string>& words) { return runs->run(words); };
     remote_.emplace(std::move(run));
   }
   Trace finish() try {
-    Trace trace = remote_->finish().trace;
+    Recorded run = remote_->finish();
     if (interrupted()) throw Interrupted();
-    return trace;
+    if (run.interrupted) throw std::runtime_error("cuboct-gpu was interrupted");
+    return std::move(run.trace);
   } catch (const std::runtime_error&) {
     if (interrupted()) throw Interrupted();
     throw;
@@ -84,11 +80,17 @@ class Job {
 
 }  // namespace
 
+std::string gpu_program() {
+  std::string path = beside(std::ranges::find_if(engines(), &EngineRow::devices)->program);
+  if (path.empty()) throw InputError("no program cuboct-gpu beside this one");
+  return path;
+}
+
 std::string find_gpu(std::string& why) {
   try {
     const Scratch scratch;
     const int code =
-        Process(program(), {"--list"}, false, {scratch.path("said"), scratch.path("errors")}).wait();
+        Process(gpu_program(), {"--list"}, false, {scratch.path("said"), scratch.path("errors")}).wait();
     if (interrupted()) throw Interrupted();
     if (code != 0) throw std::runtime_error(read_text(scratch.path("errors")));
     const std::string line = read_text(scratch.path("said"));
@@ -103,24 +105,24 @@ std::string find_gpu(std::string& why) {
   }
 }
 
-Trace run_gpu(const Case& c, const Body& start, const GpuRequest& request) {
-  return Job(c, start, request).finish();
+Trace run_gpu(const Case& c, const Body& start, const GpuRequest& request, GpuRuns* runs) {
+  return Job(c, start, request, runs).finish();
 }
 
-std::vector<Vec3> gpu_forces(const Case& c, const Body& body) {
+std::vector<Vec3> gpu_forces(const Case& c, const Body& body, GpuRuns* runs) {
   GpuRequest request;
   request.dt = c.scene.rule.dt;
   request.scene_steps = c.scene.steps;
   request.forces = true;
   request.keep = {0};
-  const Trace trace = run_gpu(c, body, request);
+  const Trace trace = run_gpu(c, body, request, runs);
   if (trace.stop) throw std::runtime_error(trace.stop->text);
   return trace.bodies.at(0).force;
 }
 
 std::vector<double> gpu_rates(const Case& c, const Body& start, const GpuRequest& request, int repeats,
                               double seconds) {
-  Job job(c, start, request,
+  Job job(c, start, request, nullptr,
           {"--bench", "--repeats", std::to_string(repeats), "--seconds", fmt::format("{}", seconds)});
   std::vector<double> rates;
   if (job.finish().stop) return rates;

@@ -24,7 +24,8 @@ void add_reason(Outcome& outcome, const std::string& reason) {
 }
 
 // Pair forces of the engine on the particles of a kept state.
-std::vector<Vec3> forces_on(const Case& c, const Plan* plan, const Body& body, const Periodic& periodic) {
+std::vector<Vec3> forces_on(const Case& c, const Plan* plan, const Body& body, const Periodic& periodic,
+                            GpuRuns* gpu) {
   if (plan) {
     const State state = to_fixed(body, plan->rule, plan->lattice, plan->origin);
     std::vector<Vec3> forces;
@@ -32,7 +33,7 @@ std::vector<Vec3> forces_on(const Case& c, const Plan* plan, const Body& body, c
       forces.push_back(force_of(plan->rule, kick));
     return forces;  // the same in every fixed engine
   }
-  if (on_gpu(c.settings)) return gpu_forces(c, body);
+  if (on_gpu(c.settings)) return gpu_forces(c, body, gpu);
   RealOptions options;
   options.precision = c.settings.arithmetic == Arithmetic::float32 ? Precision::float32 : Precision::float64;
   return Reference(c.scene.rule, body, periodic, options).forces();
@@ -55,7 +56,7 @@ void check_body(const Body& body, const Scene& scene) {
     throw InputError("a truth in the results is of another scene", "remove the results and begin again");
 }
 
-void compare_forces(const Case& c, const Plan* plan, const Truth& own, Outcome& outcome) {
+void compare_forces(const Case& c, const Plan* plan, const Truth& own, GpuRuns* gpu, Outcome& outcome) {
   // Of rounds in integers doubles tell the forces; a state without what its bonds keep has none.
   if (c.scene.rule.rounds != nullptr && (plan != nullptr || has_reference_bonds(c.scene.rule))) return;
   std::vector<double> errors;
@@ -66,7 +67,7 @@ void compare_forces(const Case& c, const Plan* plan, const Truth& own, Outcome& 
     const std::vector<Vec3> truth = Reference(c.scene.rule, body, c.scene.periodic, RealOptions{}).forces();
     std::vector<Vec3> forces;
     try {
-      forces = forces_on(c, plan, body, c.scene.periodic);
+      forces = forces_on(c, plan, body, c.scene.periodic, gpu);
     } catch (const InputError& error) {
       add_reason(outcome, fmt::format("forces not compared: {}", error.what()));
       return;
@@ -114,7 +115,8 @@ bool uses_energies(const Study& study) {
                              [](const Figure& figure) { return figure.curve.starts_with("energy."); });
 }
 
-void measure_run(const Study& study, const Truth& truth, const Truth& own, const Case& c, Outcome& outcome) {
+void measure_run(const Study& study, const Truth& truth, const Truth& own, const Case& c, GpuRuns* gpu,
+                 Outcome& outcome) {
   // What a rule of rounds keeps, it does not say.
   const bool pairs = c.scene.rule.rounds == nullptr;
   const bool conserves = pairs && keeps_energy(c.scene.rule, c.scene.periodic);
@@ -127,6 +129,7 @@ void measure_run(const Study& study, const Truth& truth, const Truth& own, const
   const bool whole = request.curves || request.energies || carries;
   request.until = whole ? truth.grid.samples : truth.grid.horizon;
   request.keep = {truth.grid.horizon};
+  request.gpu = gpu;
   const Run run = run_case(c, request);
   outcome.steps = run.steps;
   if (!run.stop.empty()) {
@@ -154,7 +157,7 @@ void measure_run(const Study& study, const Truth& truth, const Truth& own, const
     outcome.errors.momentum = run.momentum_change.norm() / run.momentum_scale;
 }
 
-void measure(const Study& study, const Truth& truth, const Truth& own, Outcome& outcome) {
+void measure(const Study& study, const Truth& truth, const Truth& own, GpuRuns* gpu, Outcome& outcome) {
   Case c = resolve(study.base, outcome.settings);
   c.scene.rule.dt = truth.grid.fitted(c.scene.rule.dt);
   c.scene.steps = truth.grid.steps_per_sample(c.scene.rule.dt) * truth.grid.samples;
@@ -174,8 +177,8 @@ void measure(const Study& study, const Truth& truth, const Truth& own, Outcome& 
     }
   }
   outcome.cost = cost_of(c);
-  compare_forces(c, plan ? &*plan : nullptr, own, outcome);
-  measure_run(study, truth, own, c, outcome);
+  compare_forces(c, plan ? &*plan : nullptr, own, gpu, outcome);
+  measure_run(study, truth, own, c, gpu, outcome);
 }
 
 }  // namespace
@@ -212,8 +215,8 @@ Outcome answered(const Study& study, const Settings& settings, const std::functi
 }
 
 Outcome measure_errors(const Study& study, const Truth& study_truth, const Truth& own,
-                       const Settings& settings) {
-  return answered(study, settings, [&](Outcome& outcome) { measure(study, study_truth, own, outcome); });
+                       const Settings& settings, GpuRuns* gpu) {
+  return answered(study, settings, [&](Outcome& outcome) { measure(study, study_truth, own, gpu, outcome); });
 }
 
 }  // namespace cuboct::study

@@ -125,7 +125,7 @@ Run run_on_gpu(const Case& c, const Scene& scene, const RunRequest& request, uin
   asked.keep = {0};
   for (const uint64_t sample : request.keep) asked.keep.push_back(sample * per_sample);
   asked.keep.push_back(asked.steps);
-  Trace trace = run_gpu(c, started_body(scene, true), asked);
+  Trace trace = run_gpu(c, started_body(scene, true), asked, request.gpu);
   Run run;
   run.dt = scene.rule.dt;
   run.steps = trace.steps();

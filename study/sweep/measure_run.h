@@ -13,6 +13,8 @@
 
 namespace cuboct::study {
 
+class GpuRuns;
+
 struct RunRequest {
   TimeGrid grid;
   uint64_t until = 0;     // the last sample
@@ -20,6 +22,7 @@ struct RunRequest {
   bool energies = false;  // energy.kinetic, .potential, .gravity, .total, and the pressure of a box, as well
   std::vector<uint64_t> keep;  // samples whose bodies are kept, ascending
   int threads = 1;             // of the host
+  GpuRuns* gpu = nullptr;      // where a run of the gpu engine goes on beside others
 };
 
 struct Run {

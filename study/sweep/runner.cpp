@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <set>
 
@@ -25,6 +26,7 @@ constexpr const char* kBegun = "(begun)";
 
 Runner::Runner(const Study& study, Store& store, const RunnerOptions& options)
     : study_(study), store_(store), options_(options) {
+  most_gpu_jobs_ = options_.jobs > 0 ? options_.jobs : gpu_runs_at_once();
   if (options_.jobs <= 0) options_.jobs = usable_cores();
 }
 
@@ -95,16 +97,21 @@ std::vector<Outcome> Runner::errors_of(const std::vector<Settings>& points) {
     if (some_on_gpu && !has_gpu()) throw InputError(no_gpu_);
     make_truths(missing);
     std::vector<Piece> here, there;
+    std::unique_ptr<GpuRuns> gpu;
     for (const Settings& settings : missing)
       (on_gpu(settings) ? there : here).push_back({size_of_run(study_, settings), [&, settings] {
-                                                     Outcome outcome =
-                                                         measure_errors(study_, truths_.at(""),
-                                                                        truth_of(settings), settings);
+                                                     Outcome outcome = measure_errors(
+                                                         study_, truths_.at(""), truth_of(settings), settings,
+                                                         on_gpu(settings) ? gpu.get() : nullptr);
                                                      if (on_gpu(settings)) outcome.machine = *gpu_;
                                                      store_.put_errors(outcome);
                                                    }});
     work_off(std::move(here), options_.jobs, "points", options_.progress);
-    work_off(std::move(there), 1, "points on the GPU", options_.progress);
+    if (!there.empty()) {
+      gpu_jobs_ = std::min(most_gpu_jobs_, static_cast<int>(there.size()));
+      gpu = std::make_unique<GpuRuns>(gpu_jobs_);
+      work_off(std::move(there), gpu_jobs_, "points on the GPU", options_.progress);
+    }
   }
   std::vector<Outcome> outcomes;
   for (const Settings& settings : points) outcomes.push_back(*store_.errors(settings));

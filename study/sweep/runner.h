@@ -15,7 +15,7 @@
 namespace cuboct::study {
 
 struct RunnerOptions {
-  int jobs = 0;          // points computed at once; 0: one per core
+  int jobs = 0;          // points computed at once; 0: one per core, on a GPU gpu_runs_at_once()
   bool speed = true;     // measure speeds as well, one after the other when all errors are there
   bool progress = true;  // a line on stderr, where that is a terminal
 };
@@ -31,6 +31,8 @@ class Runner {
   void run();
   // In one line what `run` left out, and why; empty: nothing.
   const std::string& left_out() const { return left_out_; }
+  // Points that went on at once on a GPU; 0: none did.
+  int gpu_jobs() const { return gpu_jobs_; }
 
   // The study's truth, computed where it is not there yet.
   const Truth& truth();
@@ -48,6 +50,7 @@ class Runner {
   const Study& study_;
   Store& store_;
   RunnerOptions options_;
+  int most_gpu_jobs_ = 1, gpu_jobs_ = 0;
   std::map<std::string, Truth> truths_;  // by physics_key
   std::set<std::string> no_truth_;       // physics_keys without one: no run in doubles has an end
   std::optional<std::string> gpu_;       // its name, once looked up; empty: there is none

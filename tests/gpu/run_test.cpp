@@ -71,6 +71,7 @@ TEST(GpuRun, OfALostPositionKeepsTheStatesBefore) {
 
 const char* to_string(Arithmetic) { return "made up"; }
 std::vector<Device> find_devices(std::string*) { return {}; }
+void share_devices(bool) {}
 std::unique_ptr<Engine> make_fixed_engine(const Scene&, const Plan&, const State&, const Options&) {
   return nullptr;
 }

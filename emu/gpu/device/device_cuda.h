@@ -5,10 +5,13 @@
 #include <cuda_runtime.h>
 
 #include <cstdint>
+#include <cstring>
 #include <cub/device/device_scan.cuh>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "emu/gpu/device/sharing.h"
 
 namespace cuboct::gpu {
 
@@ -53,10 +56,19 @@ class Stream {
     uint64_t all = UINT64_MAX;
     check(cudaDeviceGetDefaultMemPool(&pool, device), "device");
     check(cudaMemPoolSetAttribute(pool, cudaMemPoolAttrReleaseThreshold, &all), "device");
+    own().push_back(this);
   }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
-  ~Stream() { cudaStreamDestroy(stream_); }
+  ~Stream() {
+    std::erase(own(), this);
+    cudaStreamDestroy(stream_);
+  }
+  // Those that this thread has made.
+  static std::vector<const Stream*>& own() {
+    thread_local std::vector<const Stream*> streams;
+    return streams;
+  }
   int device() const { return device_; }
   int multiprocessors() const { return multiprocessors_; }
   void activate() const { check(cudaSetDevice(device_), "choose a device"); }
@@ -106,16 +118,28 @@ class Graph {
   cudaGraphExec_t exec_ = nullptr;
 };
 
+// Runs that go on at once share a pool: cudaFree would have each wait for all.
 inline void* allocate(int device, size_t bytes) {
   void* memory = nullptr;
   check(cudaSetDevice(device), "choose a device");
-  check(cudaMalloc(&memory, bytes), "allocate device memory");
+  if (!Sharing::all().on()) {
+    check(cudaMalloc(&memory, bytes), "allocate device memory");
+    return memory;
+  }
+  check(cudaMallocAsync(&memory, bytes, cudaStreamPerThread), "allocate device memory");
+  check(cudaStreamSynchronize(cudaStreamPerThread), "allocate device memory");
   return memory;
 }
+// Waits for what uses it: for the device, or for the streams of the run, whose thread this is.
 inline void release(int device, void* memory) {
   if (!memory) return;
   cudaSetDevice(device);
-  cudaFree(memory);
+  if (!Sharing::all().on()) {
+    cudaFree(memory);
+    return;
+  }
+  for (const Stream* stream : Stream::own()) cudaStreamSynchronize(stream->get());
+  cudaFreeAsync(memory, cudaStreamPerThread);
 }
 inline void copy(Stream& stream, void* to, int to_device, const void* from, int from_device, size_t bytes) {
   check(to_device == from_device ? cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToDevice, stream.get())
@@ -126,9 +150,30 @@ inline void upload(Stream& stream, void* to, const void* from, size_t bytes) {
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream.get()), "copy to the device");
   stream.synchronize();  // `from` may go
 }
+// Pages that stay: the driver need not copy what is little a second time.
+class Landing {
+ public:
+  static constexpr size_t kBytes = size_t{64} * 1024;
+  Landing() = default;
+  Landing(const Landing&) = delete;
+  Landing& operator=(const Landing&) = delete;
+  ~Landing() {
+    if (memory_) cudaFreeHost(memory_);
+  }
+  void* memory() {
+    if (!memory_) check(cudaMallocHost(&memory_, kBytes), "allocate memory that devices reach");
+    return memory_;
+  }
+
+ private:
+  void* memory_ = nullptr;
+};
 inline void download(Stream& stream, void* to, const void* from, size_t bytes) {
-  check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream.get()), "copy from the device");
+  thread_local Landing landing;
+  void* first = bytes <= Landing::kBytes ? landing.memory() : to;
+  check(cudaMemcpyAsync(first, from, bytes, cudaMemcpyDeviceToHost, stream.get()), "copy from the device");
   stream.synchronize();
+  if (first != to) std::memcpy(to, first, bytes);
 }
 inline void clear(Stream& stream, void* memory, size_t bytes) {
   stream.activate();
@@ -391,17 +436,20 @@ void for_each_cached(Stream& stream, uint32_t begin, uint32_t end, int block, co
   check(cudaGetLastError(), "start a kernel");
 }
 // Steps 1 to `steps` of all indices below `end`, in one launch, while f.goes_on(step). What f gives is added
-// up in sums[step]. False, and nothing is done: the device does not hold so many at once.
+// up in sums[step]. Waits for their end. False, and nothing is done: the device does not hold so many at
+// once, or, where it has a choice, they are more than the run's share of it.
 template <class Lanes, class F>
 bool go_on_together(Stream& stream, uint32_t end, int block, const void* cache, size_t words, uint32_t steps,
-                    Meeting& meeting, uint64_t* sums, const F& f) {
+                    Meeting& meeting, uint64_t* sums, bool has_choice, const F& f) {
   stream.activate();
   const auto kernel = together_kernel<Lanes, F>;
   ask_for_memory(kernel, words * 4, "hold a rule's tables in a block's shared memory");
   int each = 0;
   check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&each, kernel, block, words * 4), "count blocks");
   const unsigned blocks = blocks_for(end * Lanes::kCount, block);
-  if (blocks > static_cast<unsigned>(each * stream.multiprocessors())) return false;
+  const auto most = static_cast<unsigned>(each * stream.multiprocessors());
+  if (blocks > most || (has_choice && blocks > Sharing::all().share_of(most))) return false;
+  const Sharing::Stay stay(stream.device(), {blocks, each}, stream.multiprocessors());
   MeetingWords* met = meeting.begin(stream);
   const auto* from = static_cast<const uint32_t*>(cache);
   auto count = static_cast<uint32_t>(words);
@@ -415,6 +463,7 @@ bool go_on_together(Stream& stream, uint32_t end, int block, const void* cache, 
     return false;
   }
   check(error, "start a kernel");
+  stream.synchronize();
   return true;
 }
 // Calls f(index, block, memory), a block of threads and `bytes` of its memory each.

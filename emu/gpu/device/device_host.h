@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <mutex>
 #include <new>
 #include <vector>
 
@@ -28,9 +29,13 @@ class Graph {
 
 // Calls for memory, by device.
 inline std::map<int, uint64_t> host_allocations;
+inline std::mutex host_allocations_guard;
 
 inline void* allocate(int device, size_t bytes) {
-  ++host_allocations[device];
+  {
+    const std::lock_guard guard(host_allocations_guard);
+    ++host_allocations[device];
+  }
   if (void* memory = std::malloc(bytes)) return memory;
   throw std::bad_alloc();
 }
@@ -115,15 +120,16 @@ struct PairLanes {
   bool all(bool value) const { return value; }
 };
 // Steps 1 to `steps` of all indices below `end`, in one launch, while f.goes_on(step). What f gives is added
-// up in sums[step]. False, and nothing is done: the device does not do so.
+// up in sums[step]. Waits for their end. False, and nothing is done: the device does not do so.
 template <class Lanes, class F>
 bool go_on_together(Stream& stream, uint32_t end, int, const void* cache, size_t, uint32_t steps, Meeting&,
-                    uint64_t* sums, const F& f) {
+                    uint64_t* sums, bool, const F& f) {
   stream.later([=] {
     for (uint32_t number = 1; number <= steps && f.goes_on(number); ++number)
       for (uint32_t i = 0; i < end; ++i)
         sums[number] += f(i, true, f.goes_on(number), f.keep(i, true, Lanes{}), cache, number, Lanes{});
   });
+  stream.synchronize();
   return true;
 }
 struct Block {

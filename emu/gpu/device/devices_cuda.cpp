@@ -4,14 +4,51 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
 #include "emu/gpu/bench/bench.h"
+#include "emu/gpu/device/sharing.h"
 
 namespace cuboct::gpu {
+namespace {
+
+// Bytes of the device that nobody has: those of its pool that wait for the next one, too.
+uint64_t free_bytes(int device, size_t free) {
+  cudaMemPool_t pool = nullptr;
+  uint64_t kept = 0, used = 0;
+  if (cudaDeviceGetDefaultMemPool(&pool, device) == cudaSuccess &&
+      cudaMemPoolGetAttribute(pool, cudaMemPoolAttrReservedMemCurrent, &kept) == cudaSuccess &&
+      cudaMemPoolGetAttribute(pool, cudaMemPoolAttrUsedMemCurrent, &used) == cudaSuccess)
+    return free + (kept - used);
+  return free;
+}
+
+}  // namespace
+
+void share_devices(bool sleeping) {
+  // Streams that go through one of the driver's connections wait for one another; it has 8 unless told.
+  setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
+  if (sleeping) cudaSetDeviceFlags(cudaDeviceScheduleBlockingSync);
+  Sharing::all().begin();
+}
 
 std::vector<Device> find_devices(std::string* why) {
+  // What never changes takes a millisecond to ask, and runs that go on at once ask each.
+  static std::mutex guard;
+  static std::vector<Device> devices;
+  const std::lock_guard lock(guard);
+  if (!devices.empty()) {
+    for (Device& device : devices) {
+      size_t free = 0, total = 0;
+      cudaSetDevice(device.ordinal);
+      cudaMemGetInfo(&free, &total);
+      device.free = free_bytes(device.ordinal, free);
+    }
+    return devices;
+  }
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
   if (error != cudaSuccess || count == 0) {
@@ -24,7 +61,6 @@ std::vector<Device> find_devices(std::string* why) {
     if (driver) dlclose(driver);
     return {};
   }
-  std::vector<Device> devices;
   for (int k = 0; k < count; ++k) {
     Device device;
     device.ordinal = k;
@@ -38,7 +74,7 @@ std::vector<Device> find_devices(std::string* why) {
     size_t free = 0, total = 0;
     cudaSetDevice(k);
     cudaMemGetInfo(&free, &total);
-    device.memory = total, device.free = free;
+    device.memory = total, device.free = free_bytes(k, free);
     device.block_memory = properties.sharedMemPerBlockOptin;
     devices.push_back(std::move(device));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "emu/gpu/device/host_stream.h"
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -24,9 +25,11 @@ void call_device(const char* what) {
     const char *call = std::getenv("CUBOCT_FAIL_CALL"), *number = std::getenv("CUBOCT_FAIL_AT");
     return call != nullptr && number != nullptr && std::string_view(call) == "device" ? std::atol(number) : 0;
   }();
-  static long count = 0;
-  if (at == 0 || ++count < at) return;
-  if (const char* mark = std::getenv("CUBOCT_FAIL_MARK"); mark != nullptr && count == at)
+  static std::atomic<long> count = 0;
+  if (at == 0) return;
+  const long number = ++count;
+  if (number < at) return;
+  if (const char* mark = std::getenv("CUBOCT_FAIL_MARK"); mark != nullptr && number == at)
     if (std::FILE* file = std::fopen(mark, "w")) std::fprintf(file, "device 0"), std::fclose(file);
   throw std::runtime_error(std::string("CUDA: ") + what + ": unspecified launch failure");
 }

@@ -103,6 +103,60 @@ TEST_F(ExploreOnGpu, AProgramThatFailsEndsTheStudyAndLeavesNoRow) {
   EXPECT_EQ(rows(bench_.path("here") + "/results.db", "select count(*) from points"), "2|\n");
 }
 
+// What a point leaves does not depend on those beside it: one is refused, one fails within its run.
+TEST_F(ExploreOnGpu, PointsAtOnceHaveTheErrorsOfOneAfterTheOther) {
+  std::filesystem::copy(CUBOCT_GPU_HOST, bench_.path("bin/cuboct-gpu"));
+  const std::string study = files_.study(
+      "[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\ncurve = \"energy.potential\"\n"
+      "[[sweep]]\nengine = \"gpu\"\narithmetic = [\"fixed\", \"float32\", \"float64\"]\n"
+      "dt_safety = [0.2, 0.3, 0.4]\n[[sweep]]\nengine = \"gpu\"\nsum_bits = 14\n"
+      "[[sweep]]\nengine = \"gpu\"\ncell_edge = \"0.6 mm\"\n",
+      "many.toml");
+  const std::string one = bench_.path("one"), many = bench_.path("many");
+  const auto run = [&](const std::string& out, const std::string& jobs) {
+    return bench_.cuboct({"explore", study, "--out", out, "--no-speed", "--jobs", jobs});
+  };
+  Answer answer = run(one, "1");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("points on the GPU: 1 at once\n"), std::string::npos) << answer.out;
+  answer = run(many, "5");
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("points on the GPU: 5 at once\n"), std::string::npos) << answer.out;
+  const char* all = "select * from points order by numbers; select * from figures order by numbers, figure;";
+  EXPECT_EQ(rows(many + "/results.db", all), rows(one + "/results.db", all));
+  EXPECT_EQ(rows(many + "/results.db", "select status, count(*) from points group by status order by status"),
+            "done|9|\nrefused|1|\nunstable|1|\n");
+}
+
+// Those that were done stay, and the same command goes on with the rest.
+TEST_F(ExploreOnGpu, AnInterruptLeavesThePointsThatAreDone) {
+  std::filesystem::copy(CUBOCT_GPU_HOST, bench_.path("bin/cuboct-gpu"));
+  constexpr int kPoints = 16;
+  std::string steps;
+  for (int k = 1; k <= kPoints; ++k) steps += (k > 1 ? ", " : "") + std::to_string(0.02 + 0.01 * k);
+  const std::string study = files_.study(
+      "[truth]\nrungs = 2\n[[sweep]]\nengine = \"gpu\"\ndt_safety = [" + steps + "]\n", "many.toml");
+  const std::string out = bench_.path("cut"), whole = bench_.path("whole");
+  const auto run = [&](const std::string& to, const Condition& interrupts = {}) {
+    return bench_.cuboct({"explore", study, "--out", to, "--no-speed", "--jobs", "2"}, interrupts);
+  };
+  const auto done = [](const std::string& of) {
+    const std::string count = rows(of + "/results.db", "select count(*) from points");
+    return count.empty() ? 0 : std::stoi(count);
+  };
+  const Answer cut = run(out, [&](pid_t) { return done(out) > 0; });
+  EXPECT_EQ(cut.code, 1);
+  EXPECT_EQ(cut.err, "interrupted; the same command goes on where it was\n");
+  EXPECT_GT(done(out), 0);
+  EXPECT_LT(done(out), kPoints);
+  EXPECT_EQ(rows(out + "/results.db", "select count(*) from points where status != 'done'"), "0|\n");
+  EXPECT_EQ(run(out).code, 0);
+  EXPECT_EQ(run(whole).code, 0);
+  const char* all = "select * from points order by numbers;";
+  EXPECT_EQ(rows(out + "/results.db", all), rows(whole + "/results.db", all));
+  EXPECT_EQ(done(out), kPoints);
+}
+
 // An interrupt that meets cuboct alone is passed on, from whichever thread waits: the program need not end by
 // itself.
 TEST_F(ExploreOnGpu, AnInterruptEndsTheProgram) {
