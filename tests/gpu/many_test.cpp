@@ -112,25 +112,23 @@ TEST_F(GpuMany, LeaveTheBitsOfEachAloneInAnyOrder) {
   std::vector<size_t> order;
   for (size_t k = 0; k < 3 * kinds.size(); ++k) order.push_back(k % kinds.size());
   std::mt19937 random(1);
-  {
-    constexpr int at_once = 5;
-    std::ranges::shuffle(order, random);
-    std::vector<RunWords> runs;
-    for (size_t k = 0; k < order.size(); ++k) {
-      const auto& [name, more] = kinds[order[k]];
-      runs.push_back(scene(name, more, fmt::format("many{}.h5", k)));
-    }
-    const std::map<int, int> ended = many(runs, at_once);
-    ASSERT_EQ(ended.size(), runs.size());
-    for (size_t k = 0; k < order.size(); ++k) {
-      EXPECT_EQ(ended.at(static_cast<int>(k) + 1), codes[order[k]]) << "run " << k;
-      const std::string trace = bench_.path(fmt::format("many{}.h5", k));
-      ASSERT_EQ(std::filesystem::exists(trace), codes[order[k]] < 2);
-      if (codes[order[k]] == 2) continue;
-      SCOPED_TRACE(fmt::format("run {} of {} at once: {}", k, at_once, runs[k][0]));
-      expect_same(read_trace(trace), traces[order[k]]);
-      std::filesystem::remove(trace);
-    }
+  constexpr int kAtOnce = 5;
+  std::ranges::shuffle(order, random);
+  std::vector<RunWords> runs;
+  for (size_t k = 0; k < order.size(); ++k) {
+    const auto& [name, more] = kinds[order[k]];
+    runs.push_back(scene(name, more, fmt::format("many{}.h5", k)));
+  }
+  const std::map<int, int> ended = many(runs, kAtOnce);
+  ASSERT_EQ(ended.size(), runs.size());
+  for (size_t k = 0; k < order.size(); ++k) {
+    EXPECT_EQ(ended.at(static_cast<int>(k) + 1), codes[order[k]]) << "run " << k;
+    const std::string trace = bench_.path(fmt::format("many{}.h5", k));
+    ASSERT_EQ(std::filesystem::exists(trace), codes[order[k]] < 2);
+    if (codes[order[k]] == 2) continue;
+    SCOPED_TRACE(fmt::format("run {} of {} at once: {}", k, kAtOnce, runs[k][0]));
+    expect_same(read_trace(trace), traces[order[k]]);
+    std::filesystem::remove(trace);
   }
 }
 
