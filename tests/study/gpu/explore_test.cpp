@@ -109,7 +109,7 @@ TEST_F(ExploreOnGpu, PointsAtOnceHaveTheErrorsOfOneAfterTheOther) {
   const std::string study = files_.study(
       "[truth]\nrungs = 2\n[[figure]]\nkind = \"mean\"\ncurve = \"energy.potential\"\n"
       "[[sweep]]\nengine = \"gpu\"\narithmetic = [\"fixed\", \"float32\"]\n"
-      "dt_safety = [0.3, 0.4]\n[[sweep]]\nengine = \"gpu\"\nsum_bits = 14\n"
+      "dt_safety = 0.4\n[[sweep]]\nengine = \"gpu\"\nsum_bits = 14\n"
       "[[sweep]]\nengine = \"gpu\"\ncell_edge = \"0.6 mm\"\n",
       "many.toml");
   const std::string one = bench_.path("one"), many = bench_.path("many");
@@ -119,21 +119,21 @@ TEST_F(ExploreOnGpu, PointsAtOnceHaveTheErrorsOfOneAfterTheOther) {
   Answer answer = run(one, "1");
   EXPECT_EQ(answer.code, 0) << answer.err;
   EXPECT_NE(answer.out.find("points on the GPU: 1 at once\n"), std::string::npos) << answer.out;
-  answer = run(many, "4");
+  answer = run(many, "3");
   EXPECT_EQ(answer.code, 0) << answer.err;
-  EXPECT_NE(answer.out.find("points on the GPU: 4 at once\n"), std::string::npos) << answer.out;
+  EXPECT_NE(answer.out.find("points on the GPU: 3 at once\n"), std::string::npos) << answer.out;
   const char* all = "select * from points order by numbers; select * from figures order by numbers, figure;";
   EXPECT_EQ(rows(many + "/results.db", all), rows(one + "/results.db", all));
   EXPECT_EQ(rows(many + "/results.db", "select status, count(*) from points group by status order by status"),
-            "done|4|\nrefused|1|\nunstable|1|\n");
+            "done|2|\nrefused|1|\nunstable|1|\n");
 }
 
 // Those that were done stay, and the same command goes on with the rest.
 TEST_F(ExploreOnGpu, AnInterruptLeavesThePointsThatAreDone) {
   std::filesystem::copy(CUBOCT_GPU_HOST, bench_.path("bin/cuboct-gpu"));
-  constexpr int kPoints = 10;
+  constexpr int kPoints = 5;
   std::string steps;
-  for (int k = 1; k <= kPoints; ++k) steps += (k > 1 ? ", " : "") + std::to_string(0.03 + 0.01 * k);
+  for (int k = 1; k <= kPoints; ++k) steps += (k > 1 ? ", " : "") + std::to_string(0.06 + 0.02 * k);
   const std::string study = files_.study(
       "[truth]\nrungs = 2\n[[sweep]]\nengine = \"gpu\"\ndt_safety = [" + steps + "]\n", "many.toml");
   const std::string out = bench_.path("cut"), whole = bench_.path("whole");
