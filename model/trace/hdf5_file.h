@@ -12,7 +12,9 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -32,16 +34,46 @@ inline void start() {
   static_cast<void>(once);
 }
 
+// What the system said to the library's last call, "" where it was not the system that failed it.
+inline std::string system_error() {
+  std::string_view said;
+  const auto look = [](unsigned, const H5E_error2_t* entry, void* to) -> herr_t {
+    constexpr std::string_view kBefore = "error message = '";
+    const std::string_view text = entry->desc == nullptr ? "" : entry->desc;
+    if (const size_t at = text.find(kBefore); at != text.npos) {
+      const std::string_view from = text.substr(at + kBefore.size());
+      *static_cast<std::string_view*>(to) = from.substr(0, from.find('\''));
+    }
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look, &said);
+  return std::string(said);
+}
+
+// Whether a call failed that leaves a file broken, and what the system said.
+struct Broken {
+  bool is = false;
+  std::string why;
+  void take() noexcept {
+    try {
+      if (!is) why = system_error();
+    } catch (const std::bad_alloc&) {
+    }
+    is = true;
+  }
+};
+
 // An HDF5 identifier that closes itself; a call that failed throws the error of the file at hand.
 class Handle {
  public:
-  // `broken`: where it is true in the end, the identifier stays open (Writer).
-  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& error, const bool* broken = nullptr)
+  // `broken`: of the file that it belongs to (Writer). Closing writes, and tells there that it could not; the
+  // identifiers of a broken file stay open.
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string& error, Broken* broken = nullptr)
       : id_(id), close_(close), broken_(broken) {
     if (id < 0) throw InputError(error);
   }
   ~Handle() {
-    if (id_ >= 0 && !(broken_ && *broken_)) close_(id_);
+    if (id_ >= 0 && !(broken_ && broken_->is) && close_(id_) < 0 && broken_) broken_->take();
   }
   Handle(Handle&& other) noexcept
       : id_(std::exchange(other.id_, -1)), close_(other.close_), broken_(other.broken_) {}
@@ -52,7 +84,7 @@ class Handle {
  private:
   hid_t id_;
   herr_t (*close_)(hid_t);
-  const bool* broken_;
+  Broken* broken_;
 };
 
 // `file`: as it lies there, little-endian on every machine: same trace, same bytes.
@@ -216,8 +248,8 @@ class Writer {
   }
 
   Handle handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) const {
-    if (id < 0) broken_ = true;
-    return {id, close, error_ + what, &broken_};
+    if (id < 0) broken_.take();
+    return {id, close, error_ + (broken_.why.empty() ? what : broken_.why), &broken_};
   }
 
   Handle create(const std::string& temporary) const {
@@ -230,7 +262,9 @@ class Writer {
     check(H5Pset_file_locking(access, false, true), "file");
     errno = 0;
     const hid_t id = H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, properties, access);
-    return Handle(id, H5Fclose, error_ + std::strerror(errno), &broken_);
+    const int error = errno;
+    if (id < 0) discard(temporary);  // it is there where its first bytes could not be written
+    return Handle(id, H5Fclose, error_ + std::strerror(error), &broken_);
   }
 
   Handle string_type(size_t size) const {
@@ -280,14 +314,15 @@ class Writer {
   }
 
   void check(herr_t result, const std::string& name) const {
-    if (result >= 0) return;
-    broken_ = true;
-    throw InputError(fmt::format("{}HDF5 failed at '{}'", error_, name));
+    if (result < 0) broken_.take();
+    if (!broken_.is) return;
+    throw InputError(broken_.why.empty() ? fmt::format("{}HDF5 failed at '{}'", error_, name)
+                                         : error_ + broken_.why);
   }
 
   std::string temporary_, error_;
   bool packed_;
-  mutable bool broken_ = false;
+  mutable Broken broken_;
   Handle file_;
 };
 
