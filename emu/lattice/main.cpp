@@ -16,10 +16,7 @@ int run(int argc, char** argv) {
     if (std::getenv(launcher)) {
       cuboct::end_with_starter();  // mpirun's end is ours, before anything can wait for other ranks
       cuboct::emu::MpiRanks ranks(&argc, &argv);
-      const int code = cuboct::emu::run_lattice_program(argc, argv, &ranks);
-      // A rank that failed alone (a full disk) would leave the others waiting for it.
-      if (code == 2 && ranks.size() > 1) MPI_Abort(MPI_COMM_WORLD, code);
-      return code;
+      return cuboct::emu::run_lattice_program(argc, argv, &ranks);
     }
   return cuboct::emu::run_lattice_program(argc, argv);
 }

@@ -10,7 +10,8 @@
 
 namespace cuboct::emu {
 
-// The ranks of MPI_COMM_WORLD; MPI is initialised here and finalised in the end.
+// The ranks of MPI_COMM_WORLD; MPI is initialised here and finalised in the end. A call that MPI refuses
+// throws std::runtime_error ("MPI_Isend failed in rank 1: MPI_ERR_...").
 class MpiRanks : public Ranks {
  public:
   MpiRanks(int* argc, char*** argv);
@@ -28,6 +29,7 @@ class MpiRanks : public Ranks {
   void start(const std::vector<std::span<const double>>& to,
              const std::vector<std::span<double>>& from) override;
   void finish() override;
+  void give_up(int code) override;
 
  private:
   // Until all are done.

@@ -51,6 +51,10 @@ class LatticeProgram : public EngineProgram {
 
   bool leads() const override { return !choice_.engine.ranks || choice_.engine.ranks->rank() == 0; }
 
+  void give_up(int code) override {
+    if (choice_.engine.ranks) choice_.engine.ranks->give_up(code);
+  }
+
  private:
   LatticeChoice choice_;
   bool no_quiescence_ = false;

@@ -49,6 +49,9 @@ class Ranks {
   virtual void start(const std::vector<std::span<const double>>& to,
                      const std::vector<std::span<double>>& from) = 0;
   virtual void finish() = 0;
+
+  // Of one rank alone: ends all with this exit code. Others would wait for one that met an error for ever.
+  virtual void give_up(int code) = 0;
 };
 
 }  // namespace cuboct::emu

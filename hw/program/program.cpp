@@ -243,18 +243,21 @@ int run_program(int argc, char** argv, EngineProgram& program) {
       .given(parsed.frames_given);
   if (const std::optional<int> ended = parse_command_line(app, argc, argv)) return *ended;
   parsed.options.run.log = rows_of(parsed.log);
+  // Bad input is the same in all processes of a run: in a file it is told by whoever comes first, else once.
   const auto told = [&](const InputError& error, const std::string& text, int code) {
+    bool written = false;
     try {
-      if (!parsed.error.empty()) return write_error(parsed.error, error), code;
+      if (!parsed.error.empty()) write_error(parsed.error, error), written = true;
     } catch (const std::exception&) {  // a full disk, say
     }
-    fmt::print(stderr, "{}\n", text);
+    if (!written && (code == 1 || program.leads())) fmt::print(stderr, "{}\n", text);
+    program.give_up(code);
     return code;
   };
   try {
     return run(program, parsed);
   } catch (const InputError& e) {
-    return program.leads() ? told(e, e.told(), 2) : 2;
+    return told(e, e.told(), 2);
   } catch (const std::exception& e) {
     if (const auto refusal = path_error(e)) return told(*refusal, refusal->told(), 2);
     const std::string text = fmt::format("{}: {}", program.name, failure_text(e));

@@ -53,6 +53,8 @@ class EngineProgram {
   virtual EngineKind kind(Scene& scene, const Plan& plan, const ProgramOptions& options) = 0;
   // Of processes that share a run, one writes and prints.
   virtual bool leads() const { return true; }
+  // An error ends this process with this exit code: it has been told.
+  virtual void give_up(int) {}
   // Lines of --bench: "name value unit".
   virtual void print_bench(const Scene& scene, const Plan& plan, const Recorded& run);
   // The line that ends a run.

@@ -83,20 +83,20 @@ void Remote::wait() {
   // Of a program that was ended while it wrote one.
   const std::string& checkpoint = run_.request.checkpoint.path;
   if (code != 0 && !checkpoint.empty()) fs::remove(checkpoint + ".tmp");
-  // Ranks that could not write all of it leave what they have.
-  if (code == 2 && over_mpi() && left) {
-    trouble_ = error ? parts_of(*error).message : "the ranks could not write all of it";
+  // A program that could not write all of it leaves what it has.
+  if (code == 2 && left) {
+    trouble_ = error ? parts_of(*error).message : name + " could not write all of it";
     return;
   }
   if (error && code == 2) throw *error;
-  if (error && code == 1 && !left) throw std::runtime_error(error->what());
+  const std::string goes_on =
+      !checkpoint.empty() && fs::exists(checkpoint) ? "; --resume goes on from the last checkpoint" : "";
+  if (error && code == 1 && !left) throw std::runtime_error(error->what() + goes_on);
   // Exit code 1 with a trace: the run had to stop or found something wrong, and the trace says what.
   if (code == 0 || (code > 0 && left)) return;
   if (interrupted() && (code < 0 || over_mpi()))
     throw std::runtime_error(fmt::format("interrupted before {} began", over_mpi() ? "the ranks" : name));
   if (!said.empty()) throw std::runtime_error(said);
-  const std::string goes_on =
-      !checkpoint.empty() && fs::exists(checkpoint) ? "; --resume goes on from the last checkpoint" : "";
   // A shell's way, and mpirun's, to tell of a signal.
   const int signal = code < 0 ? -code : over_mpi() && code > 128 ? code - 128 : 0;
   if (signal > 0)
