@@ -47,6 +47,14 @@ speed_t speed_of(int baud) {
   throw InputError(fmt::format("cannot open port {}: {}", path, std::strerror(error)));
 }
 
+// Of a read (0: the line hung up) or a write in a run. USB adapters that are unplugged and pseudo-terminals
+// whose other end has closed differ in which of these they tell.
+[[noreturn]] void lose(const std::string& path, int error) {
+  if (error == 0 || error == EIO || error == ENODEV || error == ENXIO)
+    throw std::runtime_error(fmt::format("port {} is gone: is the board still plugged in?", path));
+  throw std::runtime_error(fmt::format("port {}: {}", path, std::strerror(error)));
+}
+
 }  // namespace
 
 SerialPort::SerialPort(const std::string& path, int baud) : path_(path), baud_(baud) {
@@ -92,8 +100,7 @@ void SerialPort::write(const Bytes& bytes) {
       at += static_cast<size_t>(done);
       continue;
     }
-    if (done < 0 && errno != EAGAIN && errno != EINTR)
-      throw std::runtime_error(fmt::format("port {}: {}", path_, std::strerror(errno)));
+    if (done < 0 && errno != EAGAIN && errno != EINTR) lose(path_, errno);
     pollfd waiting{file_, POLLOUT, 0};
     if (poll(&waiting, 1, 10000) == 0) throw std::runtime_error(fmt::format("port {} takes nothing", path_));
   }
@@ -112,9 +119,7 @@ Bytes SerialPort::read(Clock::time_point deadline) {
       bytes.resize(static_cast<size_t>(got));
       return bytes;
     }
-    if (got == 0) throw std::runtime_error(fmt::format("port {} is gone", path_));
-    if (errno != EAGAIN && errno != EINTR)
-      throw std::runtime_error(fmt::format("port {}: {}", path_, std::strerror(errno)));
+    if (got == 0 || (errno != EAGAIN && errno != EINTR)) lose(path_, got == 0 ? 0 : errno);
   }
 }
 

@@ -98,12 +98,9 @@ TEST(Board, OfABrickHoldsGoldensBitsAndFindsTheFaultsCell) {
   }
 }
 
-// Killed, as far as files can tell, between a checkpoint and the next.
+// Unplugged between a checkpoint and the next, the run ends; on another board of the same project it goes on.
 TEST(Board, GoesOnFromACheckpoint) {
-  const SimulatedBoard board;
   const auto setup = board_setup("grips.toml");
-  emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
-  const EngineKind kind = emu::board_kind(host, setup.scene, setup.plan);
   const Scratch scratch;
   RunRequest request;
   request.steps = 24;
@@ -111,14 +108,23 @@ TEST(Board, GoesOnFromACheckpoint) {
   request.hash_every = 1;
   request.checkpoint.path = scratch.path("checkpoint");
   request.checkpoint.every_steps = 5;
-  struct Killed {};
-  request.keep = [](const RunState& state) {
-    if (std::get<State>(state).step == 11) throw Killed();
+  const auto run = [&](const SimulatedBoard& board) {
+    emu::Host host(board.port(), SimulatedBoard::kBaud, kTimeout);
+    return record(setup.scene, emu::board_kind(host, setup.scene, setup.plan), request);
   };
-  EXPECT_THROW(record(setup.scene, kind, request), Killed);
+  SimulatedBoard unplugged;
+  request.keep = [&](const RunState& state) {
+    if (std::get<State>(state).step == 11) unplugged.end();
+  };
+  try {
+    run(unplugged);
+    ADD_FAILURE() << "a board that is gone goes on";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "port " + unplugged.port() + " is gone: is the board still plugged in?");
+  }
   request.keep = {};
   request.checkpoint.resume = true;
-  const Recorded resumed = record(setup.scene, kind, request);
+  const Recorded resumed = run(SimulatedBoard());
   EXPECT_EQ(resumed.resumed_at, 10u);
   EXPECT_EQ(difference(setup.plan, golden_trace(setup, 24), resumed.trace), "");
   EXPECT_EQ(resumed.trace.state_hash.size(), 25u);
