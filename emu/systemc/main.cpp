@@ -7,12 +7,14 @@
 #include "model/base/standard_streams.h"
 
 int sc_main(int argc, char** argv) {
-  return cuboct::emu::run_machine(argc, argv,
-                                  {.name = "cuboct-systemc",
-                                   .description = "Runs a scene on cycle-accurate nodes in SystemC",
-                                   .engine = "systemc",
-                                   .text = true,
-                                   .nodes = cuboct::emu::native_nodes});
+  return cuboct::exit_code_of([&] {
+    return cuboct::emu::run_machine(argc, argv,
+                                    {.name = "cuboct-systemc",
+                                     .description = "Runs a scene on cycle-accurate nodes in SystemC",
+                                     .engine = "systemc",
+                                     .text = true,
+                                     .nodes = cuboct::emu::native_nodes});
+  });
 }
 
 // Instead of SystemC's own main, which would print a banner first.

@@ -7,7 +7,9 @@
 #include "hw/program/options.h"
 #include "model/base/standard_streams.h"
 
-int sc_main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   using namespace cuboct::emu;
   std::string build_directory;
   Machine program{.name = "cuboct-rtl",
@@ -23,6 +25,12 @@ int sc_main(int argc, char** argv) {
                "Where compiled nodes are kept; $XDG_CACHE_HOME/cuboct or ~/.cache/cuboct without it");
   };
   return run_machine(argc, argv, program);
+}
+
+}  // namespace
+
+int sc_main(int argc, char** argv) {
+  return cuboct::exit_code_of([&] { return run(argc, argv); });
 }
 
 // Instead of SystemC's own main, which would print a banner first.

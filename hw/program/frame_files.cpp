@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "model/base/interrupt.h"
+#include "model/base/names_in.h"
 #include "model/base/output.h"
 #include "model/trace/trace_file.h"
 
@@ -43,15 +44,11 @@ void FrameSender::read(const std::vector<Curve>& of, uint64_t step, Values value
 FrameReceiver::FrameReceiver(std::string prefix) : prefix_(std::move(prefix)) {
   const fs::path path(prefix_);
   const std::string start = path.filename().string() + ".";
-  std::error_code none;  // a directory that is not there holds no file
-  std::vector<fs::path> left;
-  for (const auto& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", none)) {
-    const std::string name = entry.path().filename().string();
+  const fs::path directory = path.has_parent_path() ? path.parent_path() : ".";
+  for (const std::string& name : names_in(directory.string()))
     if (name.starts_with(start) && name.size() > start.size() &&
         name.find_first_not_of("0123456789", start.size()) == std::string::npos)
-      left.push_back(entry.path());
-  }
-  for (const fs::path& file : left) fs::remove(file);
+      fs::remove(directory / name);
 }
 
 bool FrameReceiver::receive(const std::function<void(RunState)>& see, const TakeReading& read) {

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "model/base/error.h"
+#include "model/base/names_in.h"
 #include "model/base/output.h"
 
 namespace cuboct {
@@ -42,9 +43,7 @@ bool is_at(int file, const std::string& path) {
 
 // What temporary_beside (output.h) named for a process that is no more: the kill that ended it left it.
 void remove_what_dead_ones_left(const std::string& directory) {
-  std::error_code none;
-  for (std::filesystem::directory_iterator at(directory, none), end; at != end; at.increment(none)) {
-    const std::string name = at->path().filename().string();
+  for (const std::string& name : names_in(directory)) {
     constexpr std::string_view kEnd = ".tmp";
     if (!name.ends_with(kEnd)) continue;
     const size_t last = name.size() - kEnd.size(), dot = name.rfind('.', last - 1);
@@ -52,7 +51,7 @@ void remove_what_dead_ones_left(const std::string& directory) {
     pid_t process = 0;
     const auto [stop, error] = std::from_chars(name.data() + dot + 1, name.data() + last, process);
     if (error != std::errc() || stop != name.data() + last || process <= 0) continue;
-    if (kill(process, 0) != 0 && errno == ESRCH) std::filesystem::remove(at->path(), none);
+    if (kill(process, 0) != 0 && errno == ESRCH) unlink((directory + "/" + name).c_str());
   }
 }
 

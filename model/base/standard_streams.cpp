@@ -50,8 +50,10 @@ void replace(std::FILE*& stream, cookie_write_function_t* write, int mode) {
   stream = other;
 }
 
+}  // namespace
+
 // What a program did not catch itself, as before it had read its words.
-int code_of(const std::function<int()>& work) {
+int exit_code_of(const std::function<int()>& work) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
@@ -61,8 +63,6 @@ int code_of(const std::function<int()>& work) {
   }
   return 1;
 }
-
-}  // namespace
 
 void fill_standard_descriptors() {
   // Opening takes the lowest number that is free.
@@ -77,7 +77,7 @@ int with_standard_streams(const std::function<int()>& work,
   std::signal(SIGPIPE, SIG_IGN);
   replace(stdout, write_output, isatty(STDOUT_FILENO) != 0 ? _IOLBF : _IOFBF);
   replace(stderr, write_errors, _IONBF);
-  const int code = code_of(work);
+  const int code = exit_code_of(work);
   std::fflush(stdout);
   if (output_error == 0 || output_error == EPIPE) return code;
   const std::string text = fmt::format("cannot write to standard output: {}", std::strerror(output_error));

@@ -11,8 +11,8 @@ namespace cuboct {
 // such a number, and would be overwritten by what is printed.
 void fill_standard_descriptors();
 
-// What a program's main does first, and all that it does: `work`, whose exit code it returns; 1, and a line
-// of what it was, where an exception leaves it. Descriptors are filled. A write beyond the limit of file
+// What a program's main does first, and all that it does: `work`, whose exit code it returns as exit_code_of.
+// Descriptors are filled. A write beyond the limit of file
 // sizes fails, as one on a full disk does.
 //
 // What is printed and cannot be written never stops the work. At the end a full standard output is told by
@@ -20,6 +20,10 @@ void fill_standard_descriptors();
 // does, is no error: the exit code stays the work's. What does not fit into standard error is dropped.
 int with_standard_streams(const std::function<int()>& work,
                           const std::function<void(const std::string& text)>& tell = {});
+
+// What `work` returns; 1, and a line of what it was, where an exception leaves it. For work that a library
+// calls which would tell of it in words of its own.
+int exit_code_of(const std::function<int()>& work);
 
 // Whether nothing printed from now on reaches anybody: work that has no other result may end.
 bool output_is_lost();
