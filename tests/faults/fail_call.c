@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Preloaded into a program: the n-th call of one function fails, as it may on any machine.
-//   CUBOCT_FAIL_CALL  group of calls: open, write, rename, sync, truncate, mmap, fork, thread, memory, directory, read
-//   CUBOCT_FAIL_AT    which of them, from 1; 0: none
+//   CUBOCT_FAIL_CALL  group of calls: open, write, rename, sync, truncate, mmap, fork, thread, memory, directory, read, clock
+//   CUBOCT_FAIL_AT    which of them, from 1; 0: none. Of readings of the wall clock all from there on: a day ahead, a day behind, ...
 //   CUBOCT_FAIL_IN    the program, by the name of its file; its children of other names are spared
 //   CUBOCT_FAIL_RANK  of ranks: in this one alone
 //   CUBOCT_FAIL_KILLS set: the program is killed there instead
@@ -22,12 +22,14 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <sys/uio.h>
+#include <time.h>
 #include <unistd.h>
 
-enum Group { Open, Write, Rename, Sync, Truncate, Map, Fork, Thread, Memory, Directory, Read, None };
+enum Group { Open, Write, Rename, Sync, Truncate, Map, Fork, Thread, Memory, Directory, Read, Wall, None };
 static const char* const kNames[] = {"open", "write",  "rename", "sync",      "truncate", "mmap",
-                                     "fork", "thread", "memory", "directory", "read"};
+                                     "fork", "thread", "memory", "directory", "read",     "clock"};
 
 static enum Group wanted = None;
 static long at;
@@ -181,6 +183,33 @@ int fclose(FILE* file) {
   next(file);
   errno = ENOSPC;
   return EOF;
+}
+
+// Seconds by which the wall clock is wrong now.
+static time_t jump(const char* function) {
+  static const time_t kDay = 86400;
+  if (wanted != Wall || !atomic_load_explicit(&armed, memory_order_relaxed)) return 0;
+  const long n = atomic_fetch_add(&count, 1) + 1;
+  if (n == at) leave_mark(function, NULL);
+  return n < at ? 0 : (n - at) % 2 == 0 ? kDay : -kDay;
+}
+int clock_gettime(clockid_t clock, struct timespec* now) {
+  NEXT(int, clock_gettime, clockid_t, struct timespec*);
+  const int code = next(clock, now);
+  if (code == 0 && (clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE)) now->tv_sec += jump("clock_gettime");
+  return code;
+}
+int gettimeofday(struct timeval* restrict now, void* restrict zone) {
+  NEXT(int, gettimeofday, struct timeval*, void*);
+  const int code = next(now, zone);
+  if (code == 0) now->tv_sec += jump("gettimeofday");
+  return code;
+}
+time_t time(time_t* to) {
+  NEXT(time_t, time, time_t*);
+  const time_t now = next(NULL) + jump("time");
+  if (to != NULL) *to = now;
+  return now;
 }
 
 void* __libc_malloc(size_t);

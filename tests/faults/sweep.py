@@ -5,7 +5,7 @@ nothing is left behind. usage: sweep.py BIN FAIL_CALL.so [--engines E,...] [--ca
 
 A run is new, or goes on from a checkpoint. The n-th call fails for n = 1, 2, 3, ... until the run makes fewer; beyond
 --most the step grows by SHARE of n. Where the engine is a program of its own, or ranks, its calls fail too. Behind a call,
-":kill": the engine's program is killed there instead. --gpu has the engine on the host, --mpi FAIL_MPI.so, --board cuboct-board-sim."""
+":kill": the engine's program is killed there instead. The wall clock ("clock") jumps from the first reading on, which may change nothing. --gpu has the engine on the host, --mpi FAIL_MPI.so, --board cuboct-board-sim."""
 import argparse
 import bisect
 import collections
@@ -22,7 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE, ARCH = ROOT / "tests" / "samples" / "scene.toml", ROOT / "scenes" / "archs" / "icebreaker.toml"
-CALLS = "open write rename sync truncate mmap fork thread memory directory read".split()
+CALLS = "open write rename sync truncate mmap fork thread memory directory read clock".split()
 # Others run in the command's own process.
 PROGRAMS = {"systemc": "cuboct-systemc", "rtl": "cuboct-rtl", "fpga": "cuboct-fpga", "gpu": "cuboct-gpu",
             "ranks": "cuboct-lattice"}
@@ -70,6 +70,12 @@ class Runs:
         self.mark.unlink(missing_ok=True)
         return subprocess.run([self.bin / "cuboct", *words], cwd=self.folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
                               timeout=SECONDS)
+
+    def clock_jumps(self):
+        """The library does what it is there for."""
+        environment = {**os.environ, "LD_PRELOAD": str(self.library), "CUBOCT_FAIL_CALL": "clock", "CUBOCT_FAIL_AT": "1"}
+        told = int(subprocess.run(["date", "+%s"], env=environment, capture_output=True, check=True).stdout)
+        return told - time.time() > 80000
 
     def start_board(self):
         """The words that reach a board of this scene's machine, Verilated."""
@@ -139,10 +145,16 @@ class Sweep:
         found = []
         if crashed:
             pass
+        elif case[1] == "clock" and code != 0:
+            found.append(f"ends with {code} as the clock jumps: {said[-300:]!r}")
         elif code not in (0, 1, 2):
             found.append(f"ends with {code}: {said[-300:]!r}")
         elif code != 0 and (not said.strip() or "terminate" in said or said.count("\n") > 6):
             found.append(f"ends with {code} and says {said[:600]!r}")
+        elif code != 0 and case[1] == "write" and "is damaged" in said:
+            found.append(f"takes what could not be written for damaged: {said[:600]!r}")
+        elif code != 0 and case[1] == "mpi" and case[2] not in said:
+            found.append(f"does not name the call that failed: {said[:600]!r}")
         if (left := set(runs.left()) - before) and not crashed and case[2] not in ("unlink", "remove"):
             found.append(f"leaves {', '.join(sorted(left))}")
         if code == 0:
@@ -186,13 +198,13 @@ class Sweep:
         except subprocess.TimeoutExpired:
             self.wrong.append(f"{self.engine} {start} {call} {program} {rank or ''} {at}: does not end")
             return True
-        if not runs.mark.exists():
+        if not runs.mark.exists() and call != "clock":
             return False
-        function, place = runs.mark.read_text().split()
+        function, place = runs.mark.read_text().split() if runs.mark.exists() else ("none", "0")
         # Some allocations of HDF5's that fail crash it: as after a kill the next run must go on.
         crashed = call == "memory" and done.returncode == -signal.SIGSEGV and self.is_hdf5(program, int(place, 16))
         self.judge((start, call, function, program, at) + ((f"rank {rank}",) if rank is not None else ()), done, before, crashed)
-        return True
+        return call != "clock"
 
     def all(self, calls, most, grow):
         for start in ["new"] + (["resumed"] if self.cut else []):
@@ -225,6 +237,8 @@ def main():
     parser.add_argument("--tell", action="store_true", help="each kind of end")
     given = parser.parse_args()
     runs = Runs(given)
+    if "clock" in given.calls.split(",") and not runs.clock_jumps():
+        raise SystemExit("the wall clock does not jump")
     wrong, total = [], 0
     for engine in given.engines.split(","):
         sweep = Sweep(runs, engine).all(given.calls.split(","), given.most, given.grow)
