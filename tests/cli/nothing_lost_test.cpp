@@ -485,9 +485,17 @@ TEST_F(NothingLost, AReaderThatGoesAwayCostsTheSummaryAlone) {
 
 class Ranks : public NothingLost {};
 
-// Killed while they step, and while they start.
+// One of them dies; then the command, while they step, and while they start.
 TEST_F(Ranks, OutliveNobody) {
   if (bench_.cuboct({"run", kScene, "--steps", "1", "--ranks", "2"}).code != 0) GTEST_SKIP() << "no MPI";
+  {
+    Started started(bench_, run({"--steps", "10000000", "--ranks", "2", "--force"}));
+    ASSERT_TRUE(comes([&] { return ranks_step(); }));
+    kill(std::stoi(processes(bench_, "cuboct-lattice").at(0)), SIGKILL);
+    const Answer answer = started.finish();
+    EXPECT_EQ(answer.code, 1);
+    EXPECT_EQ(answer.err, "a rank was ended by signal 9 (Killed)\n");
+  }
   for (const int signal : {SIGKILL, SIGTERM, SIGHUP})
     for (const size_t ranks : {0u, 1u, 4u}) {
       if (signal != SIGKILL && ranks != 4)
