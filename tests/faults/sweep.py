@@ -201,8 +201,8 @@ class Sweep:
         if not runs.mark.exists() and call != "clock":
             return False
         function, place = runs.mark.read_text().split() if runs.mark.exists() else ("none", "0")
-        # Some allocations of HDF5's that fail crash it: as after a kill the next run must go on.
-        crashed = call == "memory" and done.returncode == -signal.SIGSEGV and self.is_hdf5(program, int(place, 16))
+        # Some allocations of HDF5's that fail crash it, or it ends the program: as after a kill the next run must go on.
+        crashed = call == "memory" and done.returncode in (-signal.SIGSEGV, 255) and self.is_hdf5(program, int(place, 16))
         self.judge((start, call, function, program, at) + ((f"rank {rank}",) if rank is not None else ()), done, before, crashed)
         return call != "clock"
 
