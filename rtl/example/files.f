@@ -4,6 +4,7 @@ rtl/cuboct_beat.sv
 rtl/cuboct_candidate.sv
 rtl/cuboct_datapath.sv
 rtl/cuboct_delay.sv
+rtl/cuboct_either.sv
 rtl/cuboct_fifo.sv
 rtl/cuboct_filter.sv
 rtl/cuboct_filter_lane.sv

@@ -161,14 +161,15 @@ module cuboct_brick_core #(
   // The main machine.
   logic       in_round, in_exchange, in_update, in_migrate, in_dump, engine_runs, step_end;
   logic [1:0] axis;
-  logic [Axes-1:0] past_exchange, axis_onehot;
+  logic [Axes-1:0] past_exchange, axis_onehot, unused_axis_next, unused_past_next;
   logic       exchange_done, force_done, update_done, migrate_done, dump_done;
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_sequencer (
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
     .round_o(in_round), .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump),
-    .axis_o(axis), .onehot_o(axis_onehot),
-    .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
+    .axis_o(axis), .onehot_o(axis_onehot), .onehot_next_o(unused_axis_next),
+    .engine_o(engine_runs), .past_exchange_o(past_exchange), .past_next_o(unused_past_next),
+    .step_end_o(step_end), .phase_start_o, .phase_end_o
   );
 
   // Its walk over the own cells, in UPDATE, MIGRATE and DUMP; that of the relay over layers of cells.

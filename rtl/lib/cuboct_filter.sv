@@ -54,16 +54,24 @@ module cuboct_filter #(
 
   // Whether there is something to push is asked first of all in a cycle: two lanes each have said it before F3.
   localparam int Pairs = (FilterLanes + 1) / 2;
-  logic [Pairs-1:0] some_d, some_q;
-  integer           p;
+  logic [Pairs-1:0]       some_d, some_q;
+  logic [FilterLanes-1:0] early, late;  // of a lane's mask: all of its tests but the last, and that one
+  logic [2*Pairs-1:0]     all_early, all_late;
   always_comb begin
-    some_d = '0;
-    for (p = 0; p < FilterLanes; p = p + 1) some_d[p/2] = some_d[p/2] || (valid_q[2] && mask[p]);
-    if (stall_o) some_d = some_q;
+    all_early = '0;
+    all_late  = '0;
+    all_early[FilterLanes-1:0] = early;
+    all_late[FilterLanes-1:0]  = late;
+  end
+  for (genvar p = 0; p < Pairs; p++) begin : gen_some
+    cuboct_either u_some (
+      .a_early_i(all_early[2*p]), .a_late_i(all_late[2*p]), .b_early_i(all_early[2*p+1]), .b_late_i(all_late[2*p+1]),
+      .or_o(some_d[p])
+    );
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) some_q <= '0;
-    else some_q <= some_d;
+    else if (!stall_o) some_q <= some_d;
   end
   assign wants_push = (some_q != '0);
   assign stall_o    = wants_push && full_i;
@@ -122,10 +130,15 @@ module cuboct_filter #(
       always_ff @(posedge clk_i) begin
         if (load[2]) met_q <= met_d;
       end
-      assign mask[l] = f2_test_q[l] && (met_q != '0);
+      assign mask[l]  = f2_test_q[l] && (met_q != '0);
+      assign early[l] = valid_q[2];
+      assign late[l]  = mask[l];
     end else begin : gen_planar
-      logic [((Axes == 3) ? 5 : 2)-1:0] near;
-      assign mask[l] = (near == '1);
+      localparam int Tests = (Axes == 3) ? 5 : 2;
+      logic [Tests-1:0] near;  // the last one is of the longest sum
+      assign mask[l]  = (near == '1);
+      assign early[l] = valid_q[2] && (near[Tests-2:0] == '1);
+      assign late[l]  = near[Tests-1];
       cuboct_filter_lane #(
         .Axes(Axes), .FilterFrac(FilterFrac), .PlanarOne(PlanarOne), .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree),
         .Registered(1)

@@ -30,9 +30,10 @@ module cuboct_halos #(
   // Halos.
   input  logic                       halo_clear_i,   // the step's halos are read; with the last cycle of FORCE
   output logic [Faces-1:0]           halo_end_o,     // complete; always where there is no link
+  output logic [Faces-1:0]           halo_end_next_o,  // halo_end_o of the next cycle
   output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records that came in this step, as the relay sees them
   output logic [Faces-1:0]           halo_came_o,    // one comes: it counts from the next cycle on
-  output logic [Faces-1:0]           stream_end_o,   // as the streamer sees them: complete,
+  output logic [Faces-1:0]           stream_end_next_o,  // as the streamer sees them: complete in the next cycle,
   output logic [Faces-1:0]           stream_came_o,  // and a record comes: it may be read from the next cycle on
   input  logic [Streamers-1:0]       stream_read_i,  // the streamer asks
   input  logic [Streamers*AddrBits-1:0] stream_addr_i,  // read by it: what it gets is there in the next cycle (Arrival:
@@ -46,6 +47,7 @@ module cuboct_halos #(
   input  logic                       relay_read_i,   // it asks; without it the answers stay
   input  logic [Faces-3:0]           relay_clear_i,  // with relay_read_i, by face: the answer becomes 0
   input  logic [AddrBits-1:0]        relay_addr_i,   // with relay_read_i
+  input  logic [AddrBits-1:0]        relay_ahead_i,  // with relay_read_i: relay_addr_i and 1; not Arrival
   output logic [(Faces-2)*CandidateBits-1:0] relay_data_o,  // by face, from the next cycle on
   // Migrating particles.
   input  logic                       migrating_i,    // a migration phase
@@ -62,31 +64,33 @@ module cuboct_halos #(
   localparam int LastLsb  = (Axes - 1) * (PositionFrac + 2);  // of the last axis, which has no sign on the link
 
   logic [Faces-1:0] halo_end_d, halo_end_q, migrate_end_d, migrate_end_q, halo_end, migrate_end;
-  assign halo_end_d    = (halo_end_q | halo_end) & ~{Faces{halo_clear_i}};
-  assign migrate_end_d = (migrate_end_q | migrate_end) & ~migrate_clear_i;
+  // What has no link is complete from the reset on, so that no one has to ask for the link.
+  assign halo_end_d    = ((halo_end_q | halo_end) & ~{Faces{halo_clear_i}}) | ~has_link_i;
+  assign migrate_end_d = ((migrate_end_q | migrate_end) & ~migrate_clear_i) | ~has_link_i;
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
-      halo_end_q    <= '0;
-      migrate_end_q <= '0;
+      halo_end_q    <= ~has_link_i;
+      migrate_end_q <= ~has_link_i;
     end else begin
       halo_end_q    <= halo_end_d;
       migrate_end_q <= migrate_end_d;
     end
   end
-  assign halo_end_o    = halo_end_q | ~has_link_i;
-  assign migrate_end_o = migrate_end_q | ~has_link_i;
+  assign halo_end_o    = halo_end_q;
+  assign halo_end_next_o = halo_end_d;
+  assign migrate_end_o = migrate_end_q;
 
   logic [Faces-1:0] stream_end;
   if (Arrival != 0) begin : gen_stream_end
     logic [Faces-1:0] stream_end_d, stream_end_q;
-    assign stream_end_d = (stream_end_q | stream_end) & ~{Faces{halo_clear_i}};
+    assign stream_end_d = ((stream_end_q | stream_end) & ~{Faces{halo_clear_i}}) | ~has_link_i;
     always_ff @(posedge clk_i) begin
-      if (!rst_ni) stream_end_q <= '0;
+      if (!rst_ni) stream_end_q <= ~has_link_i;
       else stream_end_q <= stream_end_d;
     end
-    assign stream_end_o = stream_end_q | ~has_link_i;
+    assign stream_end_next_o = stream_end_d;
   end else begin : gen_one_end
-    assign stream_end_o = halo_end_o;
+    assign stream_end_next_o = halo_end_d;
     logic unused_stream_end;
     assign unused_stream_end = ^{stream_end, run_i, box_empty_i, box_low_i, box_high_i, PlanarOne, PlanarTwo,
                                  PlanarThree};
@@ -150,13 +154,14 @@ module cuboct_halos #(
 
     cuboct_inbox #(
       .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(Depth), .Capacity(Capacity),
-      .Relayed((Axis < Axes - 1) ? 1 : 0), .Arrival(Arrival), .AddrBits(AddrBits), .CountBits(CountBits)
+      .Relayed((Axis < Axes - 1) ? 1 : 0), .Arrival(Arrival), .Ahead(1 - Arrival), .AddrBits(AddrBits),
+      .CountBits(CountBits)
     ) u_inbox (
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(append), .halo_i(kept),
       .count_o(stream_count), .read_i(stream_read_i[Port]),
       .addr_i(stream_addr_i[Port*AddrBits +: AddrBits]), .halo_o(streamed), .relay_append_i(halo_valid),
       .relay_record_i(moved), .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i,
-      .relay_clear_i(relay_clear), .relay_addr_i, .relay_halo_o(relayed),
+      .relay_clear_i(relay_clear), .relay_addr_i, .relay_ahead_i, .relay_halo_o(relayed),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
       .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f]),
       .empty_next_o(empty_next)
@@ -164,7 +169,7 @@ module cuboct_halos #(
     assign halo_came_o[f]         = halo_valid;
     assign stream_came_o[f]       = append;
     assign migrate_some_next_o[f] = !empty_next;
-    assign migrate_over_next_o[f] = empty_next && (migrate_end_q[f] || migrate_end[f] || !has_link_i[f]);
+    assign migrate_over_next_o[f] = empty_next && (migrate_end_q[f] || migrate_end[f]);
     assign stream_data_o[f*CandidateBits +: CandPos] = {LastSign, streamed[LastLsb+PositionFrac-1:0]};
     if (RestBits > 0) begin : gen_rest
       assign stream_data_o[f*CandidateBits+CandPos +: RestBits] = streamed[HaloBits-1 -: RestBits];

@@ -10,6 +10,7 @@ module cuboct_inbox #(
   parameter int Capacity     = 16,   // particles, >= 1
   parameter int Relayed      = 1,    // 1: a second read port for the relay
   parameter int Arrival      = 0,    // 1: the relay's records come apart, and what the streamer reads is a cycle later
+  parameter int Ahead        = 0,    // 1: the relay reads in order, and a block memory is asked a record ahead for it
   parameter int AddrBits     = 4,    // of the halos' read addresses, >= clog2(HaloDepth)
   parameter int CountBits    = 5     // of the halos' count, >= clog2(HaloDepth+1)
 ) (
@@ -30,6 +31,7 @@ module cuboct_inbox #(
   input  logic                    relay_read_i,  // the relay asks; without it the answer stays
   input  logic                    relay_clear_i, // with relay_read_i: the answer is 0
   input  logic [AddrBits-1:0]     relay_addr_i,  // with relay_read_i
+  input  logic [AddrBits-1:0]     relay_ahead_i, // with relay_read_i: relay_addr_i and 1; Ahead only
   output logic [HaloBits-1:0]     relay_halo_o,  // from the next cycle on
   // Particles, first in, first out.
   input  logic                    migrating_i,   // a migration phase, or before: the oldest is shown, a cycle later on
@@ -122,7 +124,28 @@ module cuboct_inbox #(
     .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i), .clear_i(1'b0),
     .read_addr_i(read_d), .read_data_o(particle_o)
   );
-  if (Relayed != 0) begin : gen_relay
+  if (Relayed != 0 && Ahead != 0 && HaloDepth > 16) begin : gen_relay_ahead
+    // A block memory answers late in its cycle: what the link registers choose from begins at a register. The memory
+    // holds the record after that; where the relay reads another face that is the first one.
+    logic [AddrBits-1:0] ahead;
+    logic [HaloBits-1:0] after, relay_halo_q;
+    assign ahead = relay_ahead_i & {AddrBits{!relay_clear_i}};
+    cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
+      .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(relay_read_i),
+      .clear_i(1'b0), .read_addr_i(ahead), .read_data_o(after)
+    );
+    always_ff @(posedge clk_i) begin
+      if (relay_read_i) begin
+        if (relay_clear_i) relay_halo_q <= '0;
+        else relay_halo_q <= after;
+      end
+    end
+    assign relay_halo_o = relay_halo_q;
+    logic unused_relay_addr;
+    assign unused_relay_addr = ^relay_addr_i;
+  end else if (Relayed != 0) begin : gen_relay
+    logic unused_ahead;
+    assign unused_ahead = ^relay_ahead_i;
     cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
       .clk_i, .write_i((Arrival != 0) ? relay_append_i : append_i), .write_addr_i(relay_count_o[AddrBits-1:0]),
       .write_data_i((Arrival != 0) ? relay_record_i : halo_i), .read_i(relay_read_i), .clear_i(relay_clear_i),
@@ -130,7 +153,7 @@ module cuboct_inbox #(
     );
   end else begin : gen_no_relay
     logic unused_relay;
-    assign unused_relay = ^{relay_read_i, relay_clear_i, relay_addr_i, relay_record_i};
+    assign unused_relay = ^{relay_read_i, relay_clear_i, relay_addr_i, relay_ahead_i, relay_record_i};
     assign relay_halo_o = '0;
   end
 

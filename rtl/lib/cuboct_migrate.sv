@@ -21,7 +21,9 @@ module cuboct_migrate #(
   input  logic [1:0]                has_link_i,       // of the axis: below, above
   input  logic                      before_i,         // Early: the last cycle of UPDATE
   // Own particles: a slot is {away_x, particle}.
-  input  logic                      leaving_i,        // in the cycle before the phase: some particle leaves along it
+  input  logic [Axes-1:0]           next_axis_i,      // the next phase is along it
+  input  logic [Axes-1:0]           leaving_i,        // by axis, in the cycle before its phase: some particle leaves
+                                                      // along it
   input  logic [CountBits-1:0]      count_i,          // how many; in the cycle before the phase it is that of the phase
   input  logic                      full_i,           // count_i is Capacity
   output logic                      count_set_o,      // they are count_o from the next cycle on
@@ -40,8 +42,8 @@ module cuboct_migrate #(
   output logic [1:0]                load_o,           // which link registers take a beat
   output logic                      end_o,            // with load_o: an end beat
   output logic [LinkBits-1:0]       data_o,           // with load_o: payload; 0 unless someone leaves
-  input  logic                      next_empty_i,     // Early: both link registers of the next phase's axis are empty
-  output logic                      next_load_o,      // both take an end beat
+  input  logic [Axes-1:0]           next_empty_i,     // Early: by axis: both link registers are empty
+  output logic [Axes-1:0]           next_load_o,      // by axis: both take an end beat
   // The inbox that is taken from.
   output logic [2*Axes-1:0]         face_o,           // which one, one bit each; none outside of TAKE_LOW and TAKE_HIGH
   // Of the axis: below, above.
@@ -76,11 +78,10 @@ module cuboct_migrate #(
   // The first state depends on what the update, or the axis before, found.
   // What depends on the face depends on registers.
   logic [2*Axes-1:0] face_d, face_q;
-  logic              quiet;      // no one leaves along the next phase's axis
-  logic [1:0]        face_axis;  // of the next phase
+  logic [Axes-1:0]   quiet;      // by axis: its phase follows, and no one leaves along it
   logic              took_q;     // a particle was taken in the cycle before
   logic              none_q;     // no particle is left, but for one taken in the cycle before
-  // What SCAN has counted: with Early a cycle later, as the links' answers come late and no one asks before.
+  // What SCAN has counted: a cycle later, as the links' answers come late and no one asks before.
   logic                 scan_set, scan_set_q, scan_full, scan_full_q;
   logic [CountBits-1:0] scan_count, scan_count_q;
   always_ff @(posedge clk_i) begin
@@ -93,12 +94,11 @@ module cuboct_migrate #(
     scan_count_q <= scan_count;
     scan_full_q  <= scan_full;
   end
-  assign quiet     = (Early != 0) && (!leaving_i || none_q) && next_empty_i;
-  assign face_axis = before_i ? axis_i : axis_i + 2'd1;
+  assign quiet = (~leaving_i | {Axes{none_q}}) & next_empty_i & next_axis_i & {Axes{follows}};
   for (genvar f = 0; f < 2 * Axes; f++) begin : gen_face
     localparam int Axis = f / 2;
     if (f % 2 == 0) begin : gen_low
-      assign face_d[f] = (quiet && follows && face_axis == Axis[1:0]) || (stays_low && axis_i == Axis[1:0]);
+      assign face_d[f] = quiet[Axis] || (stays_low && axis_i == Axis[1:0]);
     end else begin : gen_high
       assign face_d[f] = high_d && (axis_i == Axis[1:0]);
     end
@@ -108,7 +108,7 @@ module cuboct_migrate #(
     else face_q <= face_d;
   end
   logic leaving_q;
-  always_ff @(posedge clk_i) leaving_q <= leaving_i && (count_i != '0);
+  always_ff @(posedge clk_i) leaving_q <= ((leaving_i & next_axis_i) != '0) && (count_i != '0);
   assign scans = (state_q == Scan) || (state_q == Enter && leaving_q);
   assign ends  = (state_q == End) || (state_q == Enter && !leaving_q);
 
@@ -134,7 +134,7 @@ module cuboct_migrate #(
   // Whether all is quiet is known late.
   assign follows   = (Early != 0) && (before_i || (done_o && axis_i != LastAxis[1:0]));  // the next phase begins
   assign stays_low = (active_i && ends && can_load_i == 2'b11) || (low_q && !over_i[0]);
-  assign low_d     = (quiet && follows) || stays_low;
+  assign low_d     = (quiet != '0) || stays_low;
   assign high_d    = ((low_q && over_i[0]) || high_q) && !done_o;
 
   // An arrived particle has come to where it goes on this axis.
@@ -165,14 +165,14 @@ module cuboct_migrate #(
     scan_set       = 1'b0;
     scan_count     = stays ? write_q + 1'b1 : write_q;
     scan_full      = stays && (write_q == Last[CountBits-1:0]);
-    count_set_o    = (Early != 0) && scan_set_q;
+    count_set_o    = scan_set_q;
     count_o        = scan_count_q;
     full_o         = scan_full_q;
     leaving_more_o = '0;
     pop_o          = some;
     fault_left_o   = 1'b0;
     fault_full_o   = 1'b0;
-    next_load_o    = quiet && follows;
+    next_load_o    = quiet;
     if (active_i) begin
       if (scans) begin
         state_d = Scan;
@@ -203,11 +203,6 @@ module cuboct_migrate #(
     end
     if (high_d) state_d = TakeHigh;
     if (low_d) state_d = TakeLow;
-    if (Early == 0) begin
-      count_set_o = scan_set;
-      count_o     = scan_count;
-      full_o      = scan_full;
-    end
     if (some) begin
       write_o      = !full_i;
       count_set_o  = !full_i;

@@ -146,15 +146,16 @@ module cuboct_node_core #(
   // The main machine.
   logic       in_round, in_exchange, in_update, in_migrate, in_dump, engine_runs, step_end;
   logic [1:0] axis;
-  logic [Axes-1:0] past_exchange;
+  logic [Axes-1:0] past_exchange, past_next;
   logic       exchange_done, force_done, update_done, migrate_done, dump_done;
   logic       force_over;  // what the force engine has read may be cleared
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap)) u_sequencer (
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o,
     .round_o(in_round), .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump),
-    .axis_o(axis), .onehot_o(axis_onehot),
-    .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end), .phase_start_o, .phase_end_o
+    .axis_o(axis), .onehot_o(axis_onehot), .onehot_next_o(axis_next),
+    .engine_o(engine_runs), .past_exchange_o(past_exchange), .past_next_o(past_next),
+    .step_end_o(step_end), .phase_start_o, .phase_end_o
   );
 
   // Own particles: how many, and where they are written and read.
@@ -244,13 +245,13 @@ module cuboct_node_core #(
   );
 
   // Links: receivers.
-  logic [Faces-1:0]           halo_end, migrate_end, migrate_empty, migrate_face, migrate_clear;
+  logic [Faces-1:0]           halo_end, halo_end_next, migrate_end, migrate_empty, migrate_face, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
   logic [Faces-1:0]           stream_end;
   logic [Faces-1:0]           some_next, over_next;  // migrating particles, next cycle: one waits; none does, all came
   logic [Faces-1:0]           stream_came, halo_came;  // a record comes
   logic [Streamers*AddrBits-1:0] stream_addr;
-  logic [AddrBits-1:0]        relay_addr;
+  logic [AddrBits-1:0]        relay_addr, relay_ahead;
   logic                       box_empty;
   logic [Axes*FilterFrac-1:0] box_low, box_high;
   logic                       relay_read;
@@ -265,7 +266,7 @@ module cuboct_node_core #(
   logic                 record_shift, record_set;
   logic [HaloBits-1:0]  own_record, record;
   logic                 migrate_pop;
-  logic [Axes-1:0]      axis_onehot;
+  logic [Axes-1:0]      axis_onehot, axis_next;
   if (Narrow != 0) begin : gen_narrow
     logic [Faces-1:0]        face;
     logic                    shown;
@@ -297,11 +298,12 @@ module cuboct_node_core #(
     assign stream_halos  = '0;
     assign relay_halos   = '0;
     logic unused_addr;
-    assign unused_addr = ^{stream_addr, relay_addr, relay_clear, relay_pick[0], force_over, migrate_empty, box_empty,
-                           box_low, box_high};
+    assign unused_addr = ^{stream_addr, relay_addr, relay_ahead, relay_clear, relay_pick[0], force_over, migrate_empty,
+                           box_empty, box_low, box_high};
     assign stream_end   = halo_end;
     assign stream_came  = '0;
     assign halo_came    = '0;
+    assign halo_end_next = '0;
     assign some_next    = '0;
     assign over_next    = '0;
   end else begin : gen_wide
@@ -313,11 +315,13 @@ module cuboct_node_core #(
       .PlanarThree(PlanarThree)
     ) u_halos (
       .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .link_ready_o,
-      .halo_clear_i(force_over), .halo_end_o(halo_end), .halo_count_o(halo_count), .stream_end_o(stream_end),
+      .halo_clear_i(force_over), .halo_end_o(halo_end), .halo_end_next_o(halo_end_next), .halo_count_o(halo_count),
+      .stream_end_next_o(stream_end),
       .halo_came_o(halo_came), .stream_came_o(stream_came), .run_i(engine_runs),
       .box_empty_i(box_empty), .box_low_i(box_low), .box_high_i(box_high), .stream_read_i(stream_read),
       .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
+      .relay_ahead_i(relay_ahead),
       .relay_data_o(relay_halos), .migrating_i(in_migrate || (Arrival != 0 && in_update)),
       .migrate_clear_i(migrate_clear), .migrate_end_o(migrate_end), .migrate_empty_o(migrate_empty),
       .migrate_some_next_o(some_next), .migrate_over_next_o(over_next),
@@ -346,50 +350,70 @@ module cuboct_node_core #(
   logic [Axes-1:0] leaving_d, leaving_q, leaving_more, away_axes;
 
   // Links: senders. One axis speaks at a time: the relay in EXCHANGE, the migration in MIGRATE.
-  logic [Faces-1:0]    can_load, load_link;
+  logic [Faces-1:0]    unused_can_load, load_link;
   logic [1:0]          axis_can_load, axis_load, migrate_load, axis_has_link;
   logic                relay_load, relay_end, migrate_send_end, send_end;
   logic [LinkBits-1:0] relay_beat, relay_halo_beat, migrate_beat, send_data;
   for (genvar f = 0; f < Faces; f++) begin : gen_tx
     cuboct_link_tx #(.LinkBits(LinkBits)) u_tx (
       .clk_i, .rst_ni, .has_link_i(has_link_i[f]), .load_i(load_link[f]), .end_i(send_end), .data_i(send_data),
-      .can_load_o(can_load[f]), .valid_o(link_valid_o[f]), .end_o(link_end_o[f]),
+      .can_load_o(unused_can_load[f]), .valid_o(link_valid_o[f]), .end_o(link_end_o[f]),
       .data_o(link_data_o[f*LinkBits +: LinkBits]), .ready_i(link_ready_i[f])
     );
   end
   // What belongs to the axis of the present phase, and of the one that the next migration is along.
-  logic                      next_empty, migrate_next_load;
-  logic [1:0]                axis_halo_end;
-  logic                      next_leaving;  // along the axis of the next migration phase
+  logic [Axes-1:0]           next_axis, empty_links, migrate_next_load;  // by axis
+  logic [1:0]                axis_halo_end;  // below, above: complete
   integer                    b;
+  // Links of the axis that must be taken from before they load: known from registers, as much depends on it.
+  logic [Faces-1:0]          waits_d, waits_q, holds;
+  for (genvar w = 0; w < Faces; w++) begin : gen_waits
+    assign waits_d[w] = axis_next[w/2]
+                     && ((load_link[w] && has_link_i[w]) || (link_valid_o[w] && !link_ready_i[w]));
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) waits_q <= '0;
+    else waits_q <= waits_d;
+  end
+  assign holds = waits_q & ~link_ready_i;
+  logic [1:0]                link_d, link_q;
+  always_ff @(posedge clk_i) link_q <= link_d;
+  assign axis_has_link = link_q;
   always_comb begin
-    axis_can_load = 2'b00;
-    axis_has_link = 2'b00;
-    axis_halo_end = 2'b00;
-    next_leaving  = leaving_q[0] && !in_migrate;
-    next_empty    = (link_valid_o[1:0] == 2'b00) && !in_migrate;
+    axis_can_load = 2'b11;
+    link_d        = 2'b00;
     for (b = 0; b < Axes; b = b + 1) begin
-      if (axis_onehot[b]) begin
-        axis_can_load = can_load[2*b +: 2];
-        axis_has_link = has_link_i[2*b +: 2];
-        axis_halo_end = halo_end[2*b +: 2];
-      end
-      if (b > 0 && in_migrate && axis_onehot[b-1]) begin
-        next_leaving  = leaving_q[b];
-        next_empty    = (link_valid_o[2*b +: 2] == 2'b00);
-      end
+      axis_can_load = axis_can_load & ~holds[2*b +: 2];
+      link_d        = link_d | (has_link_i[2*b +: 2] & {2{axis_next[b]}});
     end
   end
   // The same of the inboxes: what migration is told comes from registers.
   logic [1:0] axis_some, axis_over;  // below, above: a particle waits; none does, and all came
   if (Narrow != 0) begin : gen_narrow_over
+    integer e;
+    always_comb begin
+      axis_halo_end = 2'b00;
+      for (e = 0; e < Axes; e = e + 1) axis_halo_end = axis_halo_end | (halo_end[2*e +: 2] & {2{axis_onehot[e]}});
+    end
     assign axis_some = ~migrate_empty[1:0];
     assign axis_over = {2{migrate_empty[0] && (migrate_face & migrate_end) != '0}};
     logic unused_next;
-    assign unused_next = ^{some_next, over_next};
+    assign unused_next = ^{some_next, over_next, halo_end_next};
   end else begin : gen_wide_over
     logic [1:0] some_here, some_there, over_here, over_there, some_q, over_q;  // of this axis, of the next one
-    integer     c;
+    logic [1:0] ends_d, ends_q;
+    integer     c, e;
+    always_comb begin
+      ends_d = 2'b00;
+      for (e = 0; e < Axes; e = e + 1) ends_d = ends_d | (halo_end_next[2*e +: 2] & {2{axis_next[e]}});
+    end
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) ends_q <= 2'b00;
+      else ends_q <= ends_d;
+    end
+    assign axis_halo_end = ends_q;
+    logic unused_halo_end;
+    assign unused_halo_end = ^halo_end;
     always_comb begin
       some_here  = 2'b00;
       some_there = 2'b00;
@@ -413,20 +437,17 @@ module cuboct_node_core #(
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_exchange ? relay_end : migrate_send_end;
-  // Of the three all but one are 0.
-  cuboct_late #(.Bits(LinkBits)) u_send (
-    .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data)
-  );
+  assign send_data = migrate_beat | relay_beat | relay_halo_beat;  // all but one are 0
   logic [Faces-1:0] relay_face_load;  // Arrival: by face
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
-    logic next;
     if (a == 0) begin : gen_first
-      assign next = !in_migrate;
+      assign next_axis[a] = !in_migrate;
     end else begin : gen_later
-      assign next = in_migrate && axis_onehot[a-1];
+      assign next_axis[a] = in_migrate && axis_onehot[a-1];
     end
+    assign empty_links[a] = (link_valid_o[2*a +: 2] == 2'b00);
     assign load_link[2*a +: 2] = (axis_load & {2{axis_onehot[a]}}) | relay_face_load[2*a +: 2]
-                               | {2{migrate_next_load && next}};
+                               | {2{migrate_next_load[a]}};
   end
 
   // A particle as a candidate: x, y, z with their sign bits, then what the rule needs of type and v.
@@ -463,6 +484,7 @@ module cuboct_node_core #(
   logic relay_observe;
   if (Arrival != 0) begin : gen_arrival_relay
     logic [Axes-1:0] sent;
+    assign relay_ahead = '0;
     cuboct_arrival_relay #(
       .Axes(Axes), .LinkBits(LinkBits), .HaloBits(HaloBits), .SlotBits(SlotBits), .AddrBits(AddrBits),
       .CountBits(CountBits)
@@ -487,9 +509,9 @@ module cuboct_node_core #(
       .CountBits(CountBits), .Narrow(Narrow), .FirstWord(FirstWord), .WordBits(WordBits)
     ) u_relay (
       .clk_i, .rst_ni, .active_i(in_exchange), .axis_i(axis), .done_i(exchange_done),
-      .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_d}), .pick_o(relay_pick), .clear_o(relay_clear),
-      .read_o(relay_read), .addr_o(relay_addr), .slot_o(relay_slot), .record_i(relay_record),
-      .halo_i(relay_halo_record),
+      .counts_i({halo_count[(Faces-2)*CountBits-1:0], own_count_q}), .pick_o(relay_pick), .clear_o(relay_clear),
+      .read_o(relay_read), .addr_o(relay_addr), .ahead_o(relay_ahead), .slot_o(relay_slot),
+      .record_i(relay_record), .halo_i(relay_halo_record),
       .word_o(relay_word),
       .word_i(halo_word), .can_load_i(axis_can_load == 2'b11), .load_o(relay_load), .end_o(relay_end),
       .data_o(relay_beat), .halo_data_o(relay_halo_beat), .first_own_o(relay_first_own), .sent_o(relay_sent)
@@ -541,7 +563,7 @@ module cuboct_node_core #(
     assign row         = '0;
     assign force_event_o[3:1] = {issue[0], present, force_stall};
     logic unused_streams;
-    assign unused_streams = ^{past_exchange, row_data, stream_halos, stream_end, stream_came};
+    assign unused_streams = ^{past_exchange, past_next, row_data, stream_halos, stream_end, stream_came};
   end else begin : gen_stream
     localparam int Pipes = ForcePipes / Streamers;
     logic [Streamers-1:0] done;
@@ -562,7 +584,7 @@ module cuboct_node_core #(
       end
       for (genvar k = 0; k < Halos; k++) begin : gen_halo
         localparam int Face = k * Streamers + s;
-        assign complete[k+Own]                          = (Arrival != 0) ? stream_end[Face] : past_exchange[Face/2];
+        assign complete[k+Own]                          = (Arrival != 0) ? stream_end[Face] : past_next[Face/2];
         assign came[k]                                  = stream_came[Face];
         assign halos[k*CandidateBits +: CandidateBits]  = stream_halos[Face*CandidateBits +: CandidateBits];
       end
@@ -572,9 +594,9 @@ module cuboct_node_core #(
         .FilterLanes(FilterLanes), .ForcePipes(Pipes), .Interval(Interval), .QueueDepth(QueueDepth),
         .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
       ) u_finder (
-        .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_over), .own_count_i(own_count_q), .complete_i(complete),
-        .came_i(came), .again_i(1'b0), .counts_i('0), .read_o(stream_read[s]), .slot_o(own_slot),
-        .addr_o(stream_addr[s*AddrBits +: AddrBits]),
+        .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_over), .own_count_i(own_count_q),
+        .complete_next_i(complete), .came_i(came), .again_i(1'b0), .counts_i('0), .read_o(stream_read[s]),
+        .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
         .own_i(own_candidate), .halos_i(halos), .row_o(row[s*RowBits +: RowBits]),
         .row_data_i(row_data[s*FilterLanes*Axes*FilterFrac +: FilterLanes*Axes*FilterFrac]),
         .candidate_o(issue_candidate[s*CandidateBits +: CandidateBits]), .issue_o(issue[s*Pipes +: Pipes]),
@@ -586,10 +608,10 @@ module cuboct_node_core #(
     assign finder_done = (done == '1);
     if (Arrival != 0) begin : gen_no_phases
       logic unused_phases;
-      assign unused_phases = ^past_exchange;
+      assign unused_phases = ^{past_exchange, past_next};
     end else begin : gen_no_ends
       logic unused_ends;
-      assign unused_ends = ^stream_end;
+      assign unused_ends = ^{stream_end, past_exchange};
     end
     assign walk_slot    = '0;
     assign walk_word    = '0;
@@ -625,7 +647,7 @@ module cuboct_node_core #(
   localparam int Tail = (Narrow != 0) ? 0 : UpdateTail;
   logic [TickBits-1:0] tick, tick_after;
   logic                more, taken_d, taken_q;
-  cuboct_tick #(.Tail(Tail), .Registered(Arrival), .CountBits(CountBits), .TickBits(TickBits)) u_tick (
+  cuboct_tick #(.Tail(Tail), .Registered((Narrow == 0) ? 1 : 0), .CountBits(CountBits), .TickBits(TickBits)) u_tick (
     .clk_i, .rst_ni, .update_i(in_update), .dump_i(in_dump), .step_i(Narrow == 0 || update_write),
     .count_i(own_count_q), .tick_o(tick), .next_o(tick_after), .more_o(more), .update_done_o(update_done),
     .dump_done_o(dump_done)
@@ -707,10 +729,10 @@ module cuboct_node_core #(
     .SlotBits(SlotBits), .CountBits(CountBits), .Early(Arrival)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
-    .before_i(in_update && update_done), .next_empty_i(next_empty), .next_load_o(migrate_next_load),
+    .before_i(in_update && update_done), .next_empty_i(empty_links), .next_load_o(migrate_next_load),
     .goes_on_o(migrate_goes_on),
-    .leaving_i(next_leaving), .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set),
-    .count_o(migrate_count), .full_o(migrate_full),
+    .next_axis_i(next_axis), .leaving_i(leaving_q), .count_i(own_count_q), .full_i(full_q),
+    .count_set_o(migrate_count_set), .count_o(migrate_count), .full_o(migrate_full),
     .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data), .write_o(migrate_write),
     .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data), .leaving_more_o(leaving_more),
     .can_load_i(axis_can_load), .load_o(migrate_load), .end_o(migrate_send_end), .data_o(migrate_beat),

@@ -26,14 +26,16 @@ module cuboct_pair_finder #(
   parameter int          IdBits          = 1,   // Bonds only
   parameter int          IdLsb           = 0,   // of the id in a candidate; Bonds only
   localparam int         LaneBits        = (Bonds > 0) ? Bonds * IdBits : Axes * FilterFrac,
-  localparam int         Segments        = Halos + Own
+  localparam int         Segments        = Halos + Own,
+  localparam int         Most            = (Halos > 3) ? 6 : 3
 ) (
   input  logic                                  clk_i,
   input  logic                                  rst_ni,
   input  logic                                  run_i,
   input  logic                                  restart_i,
   input  logic [CountBits-1:0]                  own_count_i,  // own particles
-  input  logic [Segments-1:0]                   complete_i,   // by segment: all records are there
+  input  logic [Segments-1:0]                   complete_next_i,  // by segment: in the next cycle all records are
+                                                              // there; not with restart_i, but for the first one
   input  logic [Halos-1:0]                      came_i,       // by segment behind the own ones: a record comes
   input  logic                                  again_i,      // with restart_i: the records are walked again
   input  logic [Halos*CountBits-1:0]            counts_i,     // with again_i: of records
@@ -75,7 +77,7 @@ module cuboct_pair_finder #(
     .Segments(Segments), .Own(Own), .Arrival(Arrival), .Rounds(Rounds), .FilterLanes(FilterLanes), .RowBits(RowBits),
     .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_streamer (
-    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_i, .came_i,
+    .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_next_i, .came_i,
     .again_i, .counts_i, .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
   );
 
@@ -118,13 +120,25 @@ module cuboct_pair_finder #(
   always_ff @(posedge clk_i) begin
     if (read_o) answer_q <= read_pick;
   end
+  // By axis; records of x lie in small memories, of the others, but on arrival, in blocks that answer late.
+  logic [3*CandidateBits-1:0] of_axis;
   integer f;
   always_comb begin
-    candidate = '0;
-    if (Own != 0) candidate = read_own & {CandidateBits{answer_q[0]}};
+    of_axis = '0;
+    if (Own != 0) of_axis[0 +: CandidateBits] = read_own & {CandidateBits{answer_q[0]}};
     for (f = 0; f < Halos; f = f + 1) begin
-      candidate = candidate | (halos_i[f*CandidateBits +: CandidateBits] & {CandidateBits{answer_q[f+Own]}});
+      of_axis[(f*3/Most)*CandidateBits +: CandidateBits] = of_axis[(f*3/Most)*CandidateBits +: CandidateBits]
+        | (halos_i[f*CandidateBits +: CandidateBits] & {CandidateBits{answer_q[f+Own]}});
     end
+  end
+  if (Arrival == 0) begin : gen_late
+    cuboct_late #(.Bits(CandidateBits)) u_late (
+      .early_i(of_axis[0 +: CandidateBits]), .late_i(of_axis[CandidateBits +: CandidateBits]),
+      .other_i(of_axis[2*CandidateBits +: CandidateBits]), .or_o(candidate)
+    );
+  end else begin : gen_registered
+    assign candidate = of_axis[0 +: CandidateBits] | of_axis[CandidateBits +: CandidateBits]
+                     | of_axis[2*CandidateBits +: CandidateBits];
   end
 
   cuboct_filter #(
@@ -162,7 +176,9 @@ module cuboct_pair_finder #(
   assign present_o = present;
   // Whatever they answer where no candidate is asked for, the filter does not take it; a stall, the phase and the
   // particles are known earlier.
-  assign read_o    = run_i && own_count_i != '0 && !stall;
+  logic some_own_q;
+  always_ff @(posedge clk_i) some_own_q <= (own_count_i != '0);
+  assign read_o    = run_i && some_own_q && !stall;
   assign row_o     = row;
   assign done_o = past && !read_busy && !filter_busy && empty && !issue_busy;
   logic unused_own;

@@ -24,6 +24,7 @@ module cuboct_relay #(
   output logic [2*Axes-2:0]      clear_o,     // with read_o, by segment: it is not picked next, its answer is 0
   output logic                   read_o,      // asks all for what comes next; without it the answers stay
   output logic [AddrBits-1:0]    addr_o,      // with read_o: of the record
+  output logic [AddrBits-1:0]    ahead_o,     // with read_o: addr_o and 1; not Narrow
   output logic [SlotBits-1:0]    slot_o,      // addr_o, for the own particles; 0 outside of a phase
   input  logic [HaloBits-1:0]    record_i,    // an own one, as asked for
   input  logic [HaloBits-1:0]    halo_i,      // of the segment picked, as asked for; 0 if own or none; not Narrow
@@ -43,14 +44,18 @@ module cuboct_relay #(
   localparam int LastBeat = Beats - 1;
   localparam int Segments = 2 * Axes - 1;
   localparam logic [CountBits-1:0] One = 1;
+  localparam logic [CountBits-1:0] Two = 2;
 
   // What is asked for next depends on registers alone, whether it is asked for on the links.
   logic [Segments-1:0]  pick_d, pick_q, pick_next;
   logic [BeatBits-1:0]  beat_d, beat_q;
   logic                 sent_d, sent_q;
   logic [CountBits-1:0] count_d, count_q, next_count;  // of this segment, of the one after it
-  logic [CountBits-1:0] next_d, next_q;                // the record's number and 1
-  logic                 past, empty, working, leaves, last_segment, stays, moves;
+  logic [CountBits-1:0] next_d, next_q, after_d, after_q;  // the record's number and 1, and 2
+  logic                 past_d, past_q;                // behind the last segment: pick_q is 0
+  logic                 some_d, some_q;                // the segment has this record,
+  logic                 few_d, few_q;                  // and none behind it
+  logic                 working, leaves, last_segment, last_beat, stays, moves;
 
   integer s;
   always_comb begin
@@ -62,47 +67,65 @@ module cuboct_relay #(
     end
   end
   assign working = active_i && !sent_q;
-  assign past    = (pick_q == '0);
-  assign empty   = (count_q == '0);
-  assign end_o   = working && past && can_load_i;
-  assign load_o  = working && can_load_i && (past || !empty);
+  assign end_o   = working && past_q && can_load_i;
+  assign load_o  = working && can_load_i && (past_q || some_q);
   // To the next record, or to the next segment, or past them all.
-  assign leaves    = active_i && (empty || count_q == next_q);
-  assign stays     = active_i && !past && !empty;  // but for the last beat
-  assign read_o    = !stays || (can_load_i && beat_q == LastBeat[BeatBits-1:0]);
-  assign moves     = working && !past && read_o;
+  assign leaves    = active_i && few_q;
+  assign stays     = active_i && some_q;  // but for the last beat
+  assign last_beat = (Beats == 1) || (beat_q == LastBeat[BeatBits-1:0]);
+  assign read_o    = !stays || (can_load_i && last_beat);
+  assign moves     = working && !past_q && read_o;
   assign pick_next = !leaves ? pick_q : last_segment ? '0 : pick_q << 1;
 
   always_comb begin
     pick_d  = pick_q;
     count_d = count_q;
     next_d  = next_q;
+    after_d = after_q;
     beat_d  = beat_q;
     sent_d  = sent_q || end_o;
-    if (load_o && !past) beat_d = beat_q + 1'b1;
+    past_d  = past_q;
+    some_d  = some_q;
+    few_d   = few_q;
+    if (load_o && !past_q && Beats > 1) beat_d = beat_q + 1'b1;
     if (moves) begin
       pick_d = pick_next;
       beat_d = '0;
-      next_d = leaves ? One : next_q + 1'b1;
+      next_d  = leaves ? One : after_q;
+      after_d = leaves ? Two : after_q + 1'b1;
+      some_d  = leaves ? !last_segment && (next_count != '0) : 1'b1;
+      few_d   = leaves ? (next_count[CountBits-1:1] == '0) : (count_q == after_q);
+      past_d  = leaves && last_segment;
       if (leaves) count_d = next_count;
     end
     if (!active_i || done_i) begin
       pick_d  = {{(Segments - 1) {1'b0}}, 1'b1};
+      past_d  = 1'b0;
       count_d = counts_i[0 +: CountBits];
+      some_d  = (counts_i[0 +: CountBits] != '0);
+      few_d   = (counts_i[1 +: CountBits-1] == '0);
       sent_d  = 1'b0;
     end
   end
   always_ff @(posedge clk_i) begin
     if (!rst_ni) begin
       pick_q  <= {{(Segments - 1) {1'b0}}, 1'b1};
+      past_q  <= 1'b0;
       count_q <= '0;
+      some_q  <= 1'b0;
+      few_q   <= 1'b1;
       next_q  <= One;
+      after_q <= Two;
       beat_q  <= '0;
       sent_q  <= 1'b0;
     end else begin
       pick_q  <= pick_d;
+      past_q  <= past_d;
       count_q <= count_d;
+      some_q  <= some_d;
+      few_q   <= few_d;
       next_q  <= next_d;
+      after_q <= after_d;
       beat_q  <= beat_d;
       sent_q  <= sent_d;
     end
@@ -110,7 +133,8 @@ module cuboct_relay #(
 
   assign pick_o      = pick_q;
   assign clear_o     = ~pick_next;
-  assign addr_o      = (active_i && !past && !leaves) ? next_q[AddrBits-1:0] : '0;
+  assign addr_o      = (active_i && !past_q && !few_q) ? next_q[AddrBits-1:0] : '0;
+  assign ahead_o     = (active_i && !past_q && !few_q) ? after_q[AddrBits-1:0] : One[AddrBits-1:0];
   assign slot_o      = addr_o[SlotBits-1:0];
   assign sent_o      = sent_q;
   assign first_own_o = load_o && pick_q[0] && (beat_q == '0);

@@ -26,8 +26,10 @@ module cuboct_sequencer #(
   output logic        dump_o,           // in DUMP
   output logic [1:0]  axis_o,           // of exchange or migration, else 0
   output logic [Axes-1:0] onehot_o,     // axis_o, one bit each
+  output logic [Axes-1:0] onehot_next_o,  // onehot_o of the next cycle
   output logic        engine_o,         // the force engine runs
   output logic [Axes-1:0] past_exchange_o,  // EXCHANGE_X, _Y, _Z of this round is over; only while the engine runs
+  output logic [Axes-1:0] past_next_o,  // past_exchange_o of the next cycle, if the engine runs on
   output logic        step_end_o,       // last cycle of the last migration phase
   output logic [Phases-1:0] phase_start_o,  // first cycle of exchange x y z, force, update by round, of migrate x y z
   output logic [Phases-1:0] phase_end_o
@@ -51,7 +53,7 @@ module cuboct_sequencer #(
   logic          first_d, first_q;  // first cycle of a state
   logic          exchange_d, exchange_q, migrate_d, migrate_q;  // any of their states
   logic          y_d, z_d;
-  logic [2:0]    axis_q;  // as onehot_o
+  logic [2:0]    axis_d, axis_q;  // as onehot_o
   logic [31:0]   steps_d, steps_q;  // still to do, this one included
   logic          last_step_q;       // the step is the last one: known a cycle after the step's first
   logic          start, none;
@@ -88,6 +90,7 @@ module cuboct_sequencer #(
   assign state_d          = enter | (state_q & ~leave);
   assign z_d              = enter[ExchangeZ] || enter[MigrateZ] || (axis_q[2] && !enter[Force] && !step_end_o);
   assign y_d              = enter[ExchangeY] || enter[MigrateY] || (axis_q[1] && !z_d && !enter[Force] && !step_end_o);
+  assign axis_d           = {z_d, y_d, !z_d && !y_d};
   assign exchange_d       = enter[ExchangeX] || (exchange_q && !enter[Force]);
   assign migrate_d        = enter[MigrateX] || (migrate_q && !step_end_o);
   assign steps_d          = start ? steps_i : step_end_o ? steps_q - 32'd1 : steps_q;
@@ -106,7 +109,7 @@ module cuboct_sequencer #(
       steps_q    <= steps_d;
       exchange_q <= exchange_d;
       migrate_q  <= migrate_d;
-      axis_q     <= {z_d, y_d, !z_d && !y_d};
+      axis_q     <= axis_d;
     end
   end
 
@@ -127,9 +130,15 @@ module cuboct_sequencer #(
   if (Axes == 3) begin : gen_middle
     assign past_exchange_o[1] = in_force || state_q[ExchangeZ];
   end
+  assign past_next_o[0]      = past_exchange_o[0] || (state_q[ExchangeX] && exchange_done_i);
+  assign past_next_o[Axes-1] = past_exchange_o[Axes-1] || (state_q[LastExchange] && exchange_done_i);
+  if (Axes == 3) begin : gen_middle_next
+    assign past_next_o[1] = past_exchange_o[1] || (state_q[ExchangeY] && exchange_done_i);
+  end
   assign step_end_o = state_q[LastMigrate] && migrate_done_i;
   assign axis_o     = axis_q[2:1];
   assign onehot_o   = axis_q[Axes-1:0];
+  assign onehot_next_o = axis_d[Axes-1:0];
 
   logic [4:0] begins, ends;  // of a round's phases
   assign begins = {first_q && update_o, engine_first, first_q && state_q[ExchangeZ], first_q && state_q[ExchangeY],

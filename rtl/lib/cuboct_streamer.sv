@@ -19,7 +19,8 @@ module cuboct_streamer #(
   input  logic                   restart_i,    // its last cycle
   input  logic                   stall_i,      // nothing moves
   input  logic [CountBits-1:0]   own_i,        // own particles; they stay from the cycle before run_i on
-  input  logic [Segments-1:0]    complete_i,   // by segment: all records are there
+  input  logic [Segments-1:0]    complete_next_i,  // by segment: in the next cycle all records are there; not with
+                                               // restart_i, but for the first segment
   input  logic [Halos-1:0]       came_i,       // by segment behind the own one: a record comes, also before run_i, not
                                                // with restart_i; it may be read from the next cycle on
   input  logic                   again_i,      // with restart_i: the same records once more; Rounds above 1
@@ -42,9 +43,14 @@ module cuboct_streamer #(
   logic [RowBits-1:0]   row_d, row_q;
   logic [RowSlots-1:0]  next_slot_d, next_slot_q;  // first slot of the next row
   logic                 last_row_d, last_row_q;    // next_slot_q >= own_i
-  logic                 own_q, few_q;              // own particles: some; no more than one row
-  logic [Segments-1:0]  came, some, one;           // by segment: records that are not done with: any, one
-  logic                 complete, there, only, skip, go, done, last_record;
+  logic                 few_q;                     // own particles: no more than one row
+  logic [Segments-1:0]  came;                      // by segment: a record comes
+  logic                 skip, go, shift, done, last_record;
+  // Of the picked segment: all records are there; one is that is not done with; no other is. Registers, as all that
+  // the streamer does begins with them.
+  logic                 complete_d, complete_q, there_d, there_q, only_d, only_q;
+  logic [Segments-1:0]  some_kept, one_kept, two, follows;  // in the next cycle, if none is done with; the next segment
+  logic                 some_again, one_again, came_here;
 
   // Records that wait, by segment: one more on arrival, one less when it is consumed. No two numbers are compared, and
   // the counts are registers.
@@ -99,21 +105,59 @@ module cuboct_streamer #(
         one_q  <= one_d;
       end
     end
-    assign some[g] = some_q;
-    assign one[g]  = one_q;
+    assign two[g] = (left_q == Two);
+    if (IsOwn != 0) begin : gen_constant
+      assign some_kept[g] = run_i ? some_q : (own_i != '0);
+      assign one_kept[g]  = run_i ? one_q : (own_i == One);
+    end else begin : gen_counted
+      assign some_kept[g] = some_q || came[g];
+      assign one_kept[g]  = came[g] ? !some_q : one_q;
+    end
+    if (g == 0) begin : gen_first
+      assign some_again = (all != '0);
+      assign one_again  = (all == One);
+    end
+  end
+  assign follows   = pick_q << 1;
+  assign came_here = ((pick_q & came) != '0);
+  always_comb begin
+    complete_d = ((pick_q & complete_next_i) != '0);
+    there_d    = ((pick_q & some_kept) != '0);
+    only_d     = ((pick_q & one_kept) != '0);
+    if (shift) begin
+      complete_d = ((follows & complete_next_i) != '0);
+      there_d    = ((follows & some_kept) != '0);
+      only_d     = ((follows & one_kept) != '0);
+    end else if (done) begin
+      there_d = came_here || !only_q;
+      only_d  = came_here ? only_q : ((pick_q & two) != '0);
+    end
+    if (restart_i) begin
+      complete_d = complete_next_i[0];
+      there_d    = some_again;
+      only_d     = one_again;
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) begin
+      complete_q <= (Own != 0);
+      there_q    <= 1'b0;
+      only_q     <= 1'b0;
+    end else begin
+      complete_q <= complete_d;
+      there_q    <= there_d && (own_i != '0);
+      only_q     <= only_d;
+    end
   end
 
   always_ff @(posedge clk_i) begin
-    own_q <= (own_i != '0);
     few_q <= ({{(RowSlots - CountBits) {1'b0}}, own_i} <= FilterLanes[RowSlots-1:0]);
   end
-  assign complete    = ((pick_q & complete_i) != '0);
-  assign there       = own_q && ((pick_q & some) != '0);
-  assign only        = ((pick_q & one) != '0);
-  assign go          = run_i && !stall_i && (complete || (Arrival != 0 && there));
-  assign skip        = !there;
+  assign go          = run_i && !stall_i && (complete_q || (Arrival != 0 && there_q));
+  assign skip        = !there_q;
   assign done        = go && !skip && last_row_q;  // with the record
-  assign last_record = complete && only;
+  assign last_record = complete_q && only_q;
+  assign shift       = (go && skip) || (done && last_record);
   assign present_o   = go && !skip;
 
   always_comb begin

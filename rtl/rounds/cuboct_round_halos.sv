@@ -118,7 +118,8 @@ module cuboct_round_halos #(
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid[0]), .halo_i(moved), .count_o(stream_count),
       .read_i(stream_read_i), .addr_i(stream_addr_i), .halo_o(streamed), .relay_append_i(1'b0), .relay_record_i(moved),
       .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i(relay_read_i[0]),
-      .relay_clear_i(relay_clear), .relay_addr_i(relay_addr_i[AddrBits-1:0]), .relay_halo_o(relayed_first),
+      .relay_clear_i(relay_clear), .relay_addr_i(relay_addr_i[AddrBits-1:0]),
+      .relay_ahead_i({AddrBits{1'b0}}), .relay_halo_o(relayed_first),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
       .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f]),
       .empty_next_o(empty_next)

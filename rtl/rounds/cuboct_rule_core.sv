@@ -97,13 +97,14 @@ module cuboct_rule_core #(
   logic              in_exchange, in_update, in_migrate, in_dump, engine_runs, step_end;
   logic [Rounds-1:0] round;  // one bit each
   logic [1:0]        axis;
-  logic [Axes-1:0]   axis_onehot, past_exchange;
+  logic [Axes-1:0]   axis_onehot, unused_axis_next, past_exchange, past_next;
   logic              exchange_done, force_done, update_done, migrate_done, dump_done, last_force;
   cuboct_sequencer #(.Axes(Axes), .Overlap(Overlap), .Rounds(Rounds)) u_sequencer (
     .clk_i, .rst_ni, .start_i, .steps_i, .exchange_done_i(exchange_done), .force_done_i(force_done),
     .update_done_i(update_done), .migrate_done_i(migrate_done), .dump_done_i(dump_done), .idle_o, .round_o(round),
     .exchange_o(in_exchange), .update_o(in_update), .migrate_o(in_migrate), .dump_o(in_dump), .axis_o(axis),
-    .onehot_o(axis_onehot), .engine_o(engine_runs), .past_exchange_o(past_exchange), .step_end_o(step_end),
+    .onehot_o(axis_onehot), .onehot_next_o(unused_axis_next), .engine_o(engine_runs), .past_exchange_o(past_exchange),
+    .past_next_o(past_next), .step_end_o(step_end),
     .phase_start_o, .phase_end_o
   );
   assign last_force = force_done && round[Rounds-1];
@@ -218,7 +219,7 @@ module cuboct_rule_core #(
   // What belongs to the axis of the present phase, and of the one that the next migration is along.
   logic [Faces-1:0]  round_end;     // of this round's halos
   logic [1:0]        axis_halo_end;
-  logic              next_leaving;  // along the axis of the next migration phase
+  logic [Axes-1:0]   next_axis;     // of the next migration phase
   integer            b, r;
   always_comb begin
     round_end = '0;
@@ -226,14 +227,15 @@ module cuboct_rule_core #(
     axis_can_load = 2'b00;
     axis_has_link = 2'b00;
     axis_halo_end = 2'b00;
-    next_leaving  = leaving_q[0] && !in_migrate;
+    next_axis     = '0;
+    next_axis[0]  = !in_migrate;
     for (b = 0; b < Axes; b = b + 1) begin
       if (axis_onehot[b]) begin
         axis_can_load = can_load[2*b +: 2];
         axis_has_link = has_link_i[2*b +: 2];
         axis_halo_end = round_end[2*b +: 2];
       end
-      if (b > 0 && in_migrate && axis_onehot[b-1]) next_leaving = leaving_q[b];
+      if (b > 0) next_axis[b] = in_migrate && axis_onehot[b-1];
     end
   end
   // The same of the inboxes: what migration is told comes from registers.
@@ -259,9 +261,9 @@ module cuboct_rule_core #(
   end
   assign axis_load = in_migrate ? migrate_load : {2{relay_load}};
   assign send_end  = in_exchange ? relay_end : migrate_send_end;
-  // Of the three all but one are 0.
+  // All but one are 0.
   cuboct_late #(.Bits(LinkBits)) u_send (
-    .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .or_o(send_data)
+    .early_i(migrate_beat | relay_beat), .late_i(relay_halo_beat), .other_i('0), .or_o(send_data)
   );
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_link
     assign load_link[2*a +: 2] = axis_load & {2{axis_onehot[a]}};
@@ -282,6 +284,7 @@ module cuboct_rule_core #(
     logic [Width-1:0]                own, halo;
     logic [(Faces-1)*CountBits-1:0]  counts;
     logic [Faces-2:0]                pick, clear;
+    logic [AddrBits-1:0]             ahead;
     if (Bits == 0) begin : gen_nothing
       assign own    = '0;
       assign halo   = '0;
@@ -304,14 +307,15 @@ module cuboct_rule_core #(
     ) u_relay (
       .clk_i, .rst_ni, .active_i(in_exchange && round[k]), .axis_i(axis), .done_i(exchange_done), .counts_i(counts),
       .pick_o(pick), .clear_o(clear), .read_o(relay_read[k]), .addr_o(relay_addr[k*AddrBits +: AddrBits]),
-      .slot_o(relay_slots[k*SlotBits +: SlotBits]), .record_i(own), .halo_i(halo), .word_o(no_word), .word_i('0),
+      .ahead_o(ahead), .slot_o(relay_slots[k*SlotBits +: SlotBits]), .record_i(own), .halo_i(halo),
+      .word_o(no_word), .word_i('0),
       .can_load_i(axis_can_load == 2'b11), .load_o(sends[k]), .end_o(ends[k]),
       .data_o(beats[k*LinkBits +: LinkBits]), .halo_data_o(halo_beats[k*LinkBits +: LinkBits]),
       .first_own_o(first_own[k]), .sent_o(sent[k])
     );
     assign relay_clear[k*(Faces-2) +: Faces-2] = clear[Faces-2:1];
     logic unused_relay;
-    assign unused_relay = ^{pick, clear[0], no_word};
+    assign unused_relay = ^{pick, clear[0], ahead, no_word};
   end
   logic [SlotBits-1:0] relay_slot;
   integer              k;
@@ -336,7 +340,7 @@ module cuboct_rule_core #(
   logic [Faces:0]           complete;
   assign complete[0] = 1'b1;
   for (genvar h = 0; h < Faces; h++) begin : gen_complete
-    assign complete[h+1] = past_exchange[h/2];
+    assign complete[h+1] = past_next[h/2];
   end
   cuboct_pair_finder #(
     .Axes(Axes), .Halos(Faces), .Own(1), .Arrival(0), .Rounds(Rounds), .PositionFrac(PositionFrac),
@@ -345,7 +349,7 @@ module cuboct_rule_core #(
     .QueueDepth(QueueDepth), .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits),
     .Bonds(Bonds), .IdBits(IdBits), .IdLsb(IdInCandidate)
   ) u_finder (
-    .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .own_count_i(own_count_q), .complete_i(complete),
+    .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .own_count_i(own_count_q), .complete_next_i(complete),
     .came_i(halo_came), .again_i(!round[Rounds-1]), .counts_i(halo_count), .read_o(stream_read),
     .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate), .halos_i(stream_halos), .row_o(row),
     .row_data_i(row_data), .candidate_o(issue_candidate), .issue_o(issue), .issue_slot_o(issue_slot),
@@ -400,8 +404,8 @@ module cuboct_rule_core #(
 
   // Migration.
   logic [SlotBits-1:0] migrate_read_slot;
-  logic                migrate_pop, next_load;
-  logic [Axes-1:0]     goes_on;
+  logic                migrate_pop;
+  logic [Axes-1:0]     next_load, goes_on;
   for (genvar a = 0; a < Axes; a++) begin : gen_axis_migrate
     assign migrate_clear[2*a +: 2] = {2{axis_onehot[a] && migrate_done}};
   end
@@ -419,7 +423,8 @@ module cuboct_rule_core #(
     .SlotBits(SlotBits), .CountBits(CountBits), .Early(0)
   ) u_migrate (
     .clk_i, .rst_ni, .active_i(in_migrate), .axis_i(axis), .done_o(migrate_done), .has_link_i(axis_has_link),
-    .before_i(1'b0), .next_empty_i(1'b0), .next_load_o(next_load), .goes_on_o(goes_on), .leaving_i(next_leaving),
+    .before_i(1'b0), .next_axis_i(next_axis), .leaving_i(leaving_q), .next_empty_i('0), .next_load_o(next_load),
+    .goes_on_o(goes_on),
     .count_i(own_count_q), .full_i(full_q), .count_set_o(migrate_count_set), .count_o(migrate_count),
     .full_o(migrate_full), .read_o(migrate_read), .read_slot_o(migrate_read_slot), .read_data_i(main_data),
     .write_o(migrate_write), .write_slot_o(migrate_write_slot), .write_data_o(migrate_write_data),
@@ -435,6 +440,8 @@ module cuboct_rule_core #(
   assign observe_valid_o = (first_own[0] && axis == 2'd0) || (in_dump && (own_count_q != '0));
   assign observe_data_o  = main_data[ParticleBits-1:0];
 
+  logic unused_past;
+  assign unused_past = ^past_exchange;
   logic unused_fields;
   assign unused_fields = ^{stream_data, relay_own, relay_halos, fault_particle, migrate_pop, next_load, goes_on,
                            first_own};

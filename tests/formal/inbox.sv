@@ -3,14 +3,16 @@
 // for address k; the streamer's answer stays until the memory is read for someone else. A watched particle,
 // any of those pushed, comes out once, after those before it and before those after it, unchanged; it counts
 // from the second cycle after its push on. Neither stream touches what the other one keeps. Arrival: the relay's
-// records come apart from the streamer's, and the streamer's answer comes with its next question.
+// records come apart from the streamer's, and the streamer's answer comes with its next question. Ahead: the relay's
+// answer is what stood where the memory was asked the time before, and it is asked for address 0 with each clear.
 module inbox_formal #(
   parameter int HaloDepth    = 2,
   parameter int Capacity     = 2,
   parameter int HaloBits     = 2,
   parameter int ParticleBits = 1,
   parameter int Relayed      = 1,
-  parameter int Arrival      = 0
+  parameter int Arrival      = 0,
+  parameter int Ahead        = 0
 ) (
   input logic                    clk_i,
   input logic                    clear_i,
@@ -41,12 +43,12 @@ module inbox_formal #(
   logic [ParticleBits-1:0] particle;
   cuboct_inbox #(
     .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(HaloDepth), .Capacity(Capacity),
-    .Relayed(Relayed), .Arrival(Arrival), .AddrBits(AddrBits), .CountBits(CountBits)
+    .Relayed(Relayed), .Arrival(Arrival), .Ahead(Ahead), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
     .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_append_i, .relay_record_i, .relay_count_o(relay_count),
     .relay_read_i, .relay_clear_i,
-    .relay_addr_i(relay_addr_i[AddrBits-1:0]),
+    .relay_addr_i(relay_addr_i[AddrBits-1:0]), .relay_ahead_i(relay_addr_i[AddrBits-1:0]),
     .relay_halo_o(relay_halo), .migrating_i, .push_i, .particle_i, .full_o(full), .pop_i,
     .particle_o(particle), .empty_o(empty)
   );
@@ -72,6 +74,10 @@ module inbox_formal #(
   // Arrival: an answer is shown with the next question.
   assign halo_known   = (Arrival != 0) ? shown_halo_q : asked_q;
   assign halo_answer  = (Arrival != 0) ? shown_answer_q : answer_q;
+  logic                after_q, relay_asked;  // Ahead: what the memory was asked for last
+  logic [HaloBits-1:0] after_value_q;
+  assign relay_asked  = relay_counts
+                     && ((Ahead != 0 && relay_clear_i) ? '0 : relay_addr_i[AddrBits-1:0]) == number;
   assign relay_counts = ({{(CountBits - AddrBits) {1'b0}}, number} < relay_count_q);
   assign counts = ({{(CountBits - AddrBits) {1'b0}}, number} < count_q);
   always_ff @(posedge clk_i) begin
@@ -82,6 +88,7 @@ module inbox_formal #(
       asked_q       <= 1'b0;
       shown_halo_q  <= 1'b0;
       relayed_q <= 1'b0;
+      after_q   <= 1'b0;
       kept_q    <= 1'b0;
     end else begin
       if (clear_i) count_q <= '0;
@@ -92,14 +99,16 @@ module inbox_formal #(
       cleared_q <= cleared_q || (clear_i && count_q == HaloDepth[CountBits-1:0]);
       if (read_i) asked_q <= counts && addr_i[AddrBits-1:0] == number;
       kept_q    <= halo_known && !read_i;  // the answer stays
-      if (relay_read_i) relayed_q <= relay_counts && relay_addr_i[AddrBits-1:0] == number;
+      if (relay_read_i) relayed_q <= (Ahead != 0) ? after_q : relay_asked;
       if (relay_read_i && relay_clear_i) relayed_q <= 1'b1;
+      if (relay_read_i) after_q <= relay_asked;
     end
     if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
     if (relay_append_i && relay_count_q == {{(CountBits - AddrBits) {1'b0}}, number}) relay_value_q <= relay_record_i;
     if (read_i) answer_q <= value_q;
     if (read_i) shown_answer_q <= answer_q;
-    if (relay_read_i) relay_answer_q <= relay_value_q;
+    if (relay_read_i) relay_answer_q <= (Ahead != 0) ? after_value_q : relay_value_q;
+    if (relay_read_i) after_value_q <= relay_value_q;
     if (relay_read_i && relay_clear_i) relay_answer_q <= '0;
   end
 

@@ -42,8 +42,11 @@ module migrate_formal #(
 
   // Phases.
   logic       active_q, done, first_q, leaving_q, begins, next_load;
+  logic [Axes-1:0] next_axis, next_loads;  // of the phase that follows
   logic [1:0] axis_q;
   localparam int LastAxis = Axes - 1;
+  assign next_axis = {{(Axes - 1) {1'b0}}, 1'b1} << axis_i;
+  assign next_load = (next_loads != '0);
   assign begins = running_q && begin_i && (!active_q || done);
   // Early: the phases of a step follow one another, the first behind the update.
   always_comb begin
@@ -187,8 +190,9 @@ module migrate_formal #(
     .SlotBits(SlotBits), .CountBits(CountBits), .Early(Early)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_o(done), .has_link_i(has_link),
-    .before_i(Early != 0 && begins && !active_q), .next_empty_i(valid == 2'b00), .next_load_o(next_load),
-    .leaving_i, .count_i(count_q), .full_i(count_q == Capacity[CountBits-1:0]), .count_set_o(count_set),
+    .before_i(Early != 0 && begins && !active_q), .next_axis_i(next_axis), .leaving_i({Axes{leaving_i}}),
+    .next_empty_i({Axes{valid == 2'b00}}), .next_load_o(next_loads), .count_i(count_q),
+    .full_i(count_q == Capacity[CountBits-1:0]), .count_set_o(count_set),
     .count_o(new_count), .full_o(new_full),
     .read_o(read), .read_slot_o(read_slot), .read_data_i(read_data), .write_o(write), .write_slot_o(write_slot),
     .write_data_o(write_data), .leaving_more_o(more), .can_load_i(can_load), .load_o(load), .end_o(tells_end),

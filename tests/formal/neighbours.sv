@@ -24,6 +24,8 @@ module neighbours_formal #(
   localparam int Above        = 2 * Axis + 1;  // of the first towards the second
   localparam int SlotBits     = (Capacity > 1) ? $clog2(Capacity) : 1;
   localparam int CountBits    = $clog2(3 * Capacity) + 1;
+  localparam logic [3:0] Has0 = 4'd1 << Above;   // faces of the first node that have a link,
+  localparam logic [3:0] Has1 = 4'd1 << Below;   // and of the second
   localparam int Culls        = 3;              // registers of cuboct_cull
   localparam int Room         = ((Axis == 0) ? 1 : 3) * Capacity;  // of the face's halo memory
   localparam int ParticleBits = 9;             // x y away_y v id residue: 1 1 2 1 1 1 1 1
@@ -114,6 +116,8 @@ module neighbours_formal #(
   (* keep *) logic       tap_cleared_0, tap_cleared_1;  // Arrival: halos are cleared at this cycle's end
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;  // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1;
+  (* keep *) logic [3:0] tap_holds_0, tap_holds_1;    // by face: a link of the axis that must be taken from first
+  (* keep *) logic [1:0] tap_linked_0, tap_linked_1;  // which faces of the axis have a link
   (* keep *) logic [3:0] tap_empty_0, tap_empty_1, tap_ended_0, tap_ended_1;  // by face, of particles
   (* keep *) logic [3:0] tap_face_0, tap_face_1;  // that migration takes from
   (* keep *) logic [1:0] tap_taking_0, tap_taking_1;  // what migration keeps of it: from below, from above;
@@ -314,6 +318,19 @@ module neighbours_formal #(
           || !tap_halo_ended_1[Below])
                                                        : (tap_halo_ended_1[Below]
                                                            || !tap_migrate_ended_1[Below]));
+      // What is known of the axis a cycle ahead.
+      i_holds:  assert (tap_holds_0 == (all_valid[3:0] & {{2{tap_axis_0[1]}}, {2{tap_axis_0[0]}}})
+                        && tap_holds_1 == (all_valid[7:4] & {{2{tap_axis_1[1]}}, {2{tap_axis_1[0]}}}));
+      i_linked: assert ((idle[0] || tap_linked_0 == (tap_axis_0[1] ? Has0[3:2] : Has0[1:0]))
+                        && (idle[1] || tap_linked_1 == (tap_axis_1[1] ? Has1[3:2] : Has1[1:0])));
+      if (Narrow == 0) begin
+        i_axis_halo: assert ((idle[0] || tap_axis_halo_0 == (tap_axis_0[1] ? tap_halo_ended_0[3:2]
+                                                                              : tap_halo_ended_0[1:0]))
+                             && (idle[1] || tap_axis_halo_1 == (tap_axis_1[1] ? tap_halo_ended_1[3:2]
+                                                                              : tap_halo_ended_1[1:0])));
+        i_closed: assert ((tap_halo_ended_0 | Has0) == '1 && (tap_migrate_ended_0 | Has0) == '1
+                          && (tap_halo_ended_1 | Has1) == '1 && (tap_migrate_ended_1 | Has1) == '1);
+      end
       i_groups: assert (tap_exchange_0 == (tap_states_0[2:0] != '0) && tap_migrating_0 == (tap_states_0[7:5] != '0)
                         && tap_exchange_1 == (tap_states_1[2:0] != '0) && tap_migrating_1 == (tap_states_1[7:5] != '0));
       i_states: assert (tap_states_0 != '0 && (tap_states_0 & (tap_states_0 - 1'b1)) == '0

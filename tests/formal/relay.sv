@@ -64,19 +64,23 @@ module relay_formal #(
         .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .active_i(active_q), .axis_i(axis_q), .done_i(done), .counts_i(counts),
-    .pick_o(pick), .clear_o(clear), .read_o(read), .addr_o(addr), .slot_o(slot), .record_i(answers_q[0 +: HaloBits]),
+    .pick_o(pick), .clear_o(clear), .read_o(read), .addr_o(addr), .ahead_o(ahead), .slot_o(slot),
+    .record_i(answers_q[0 +: HaloBits]),
     .halo_i(halo), .can_load_i, .load_o(load),
     .end_o(is_end), .data_o(own_data), .halo_data_o(halo_data), .first_own_o(first_own), .sent_o(sent)
   );
   // The memories' answers; that of own particles is taken when they are picked, of the others the relay clears.
   logic [Segments-1:0]          clear;
   logic                         read;
-  logic [Segments*HaloBits-1:0] answers_q;
+  logic [AddrBits-1:0]          ahead;  // what the last memories are asked for: a record more than they answer
+  logic [Segments*HaloBits-1:0] answers_q, after_q;
   for (genvar m = 0; m < Segments; m++) begin : gen_memory
     localparam logic [2:0] Memory = m;
     always_ff @(posedge clk_i) begin
       if (m > 0 && read && clear[m]) answers_q[m*HaloBits +: HaloBits] <= '0;
-      else if (read) answers_q[m*HaloBits +: HaloBits] <= {Memory, addr};
+      else if (read) answers_q[m*HaloBits +: HaloBits] <= (m >= Segments - 2) ? after_q[m*HaloBits +: HaloBits]
+                                                                             : {Memory, addr};
+      if (read) after_q[m*HaloBits +: HaloBits] <= {Memory, clear[m] ? {AddrBits{1'b0}} : ahead};
     end
   end
   integer h;

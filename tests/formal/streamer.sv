@@ -49,7 +49,7 @@ module streamer_formal #(
   end
 
   // What the streamer is told.
-  logic [Segments-1:0]           complete, complete_q, come;
+  logic [Segments-1:0]           complete, complete_next, complete_q, come;
   logic [Segments*CountBits-1:0] counts, came_q;
   integer                        t;
   // Records come one by one, also between two steps; without Arrival each before its segment is available.
@@ -64,12 +64,18 @@ module streamer_formal #(
     for (t = 1; t < Segments; t = t + 1) begin
       if (!running_q || restart) begin
         if (!running_q || !again) came_q[t*CountBits +: CountBits] <= '0;
-        complete_q[t] <= 1'b0;
       end else if (come[t]) begin
         came_q[t*CountBits +: CountBits] <= came_q[t*CountBits +: CountBits] + 1'b1;
-      end else if (come_i[t] && came_q[t*CountBits +: CountBits] == counts_q[t*CountBits +: CountBits]) begin
-        complete_q[t] <= 1'b1;
       end
+      complete_q[t] <= complete_next[t];
+    end
+  end
+  always_comb begin
+    complete_next = 1;
+    for (t = 1; t < Segments; t = t + 1) begin
+      complete_next[t] = running_q && !restart
+                      && (complete_q[t] || (come_i[t] && came_q[t*CountBits +: CountBits]
+                                                     == counts_q[t*CountBits +: CountBits]));
     end
   end
   always_comb begin
@@ -101,7 +107,7 @@ module streamer_formal #(
     .SlotBits(AddrBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .own_i(counts_q[0 +: CountBits]),
-    .complete_i(complete), .came_i(come[Segments-1:1]), .again_i(again),
+    .complete_next_i(complete_next), .came_i(come[Segments-1:1]), .again_i(again),
     .counts_i(came_q[Segments*CountBits-1:CountBits]),
     .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
   );
