@@ -116,9 +116,11 @@ Case random_shots(uint64_t seed) {
       add_shot(scene, {3 * kEdge * uniform(), 3 * kEdge * uniform(), top + 0.6 + k + 0.3 * uniform()},
                {uniform() - 0.5, uniform() - 0.5, -0.2 - 1.3 * uniform()});
   } else {
-    const Vec3 at(3 * kEdge * uniform(), 3 * kEdge * uniform(), top + 0.6 + uniform());
+    const double z = uniform(), y = uniform(), x = uniform();
+    const Vec3 at(3 * kEdge * x, 3 * kEdge * y, top + 0.6 + z);
     add_shot(scene, at, Vec3::Zero());
-    add_shot(scene, at + Vec3(0.3 * uniform(), 0.3 * uniform(), 0.3), Vec3::Zero());
+    const double beside_y = uniform(), beside_x = uniform();
+    add_shot(scene, at + Vec3(0.3 * beside_x, 0.3 * beside_y, 0.3), Vec3::Zero());
     scene.rule.dt = 0.05 + 0.2 * uniform();
   }
   return cooked("shots " + std::to_string(seed), scene, 60);

@@ -26,8 +26,10 @@ AtomSystem warm_sheet(double speed, bool closed = false) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> draw(0, speed);
   Vec3 mean = Vec3::Zero();
-  for (size_t i = 0; i < system.x.size(); ++i)
-    system.v.emplace_back(draw(random), draw(random), draw(random));
+  for (size_t i = 0; i < system.x.size(); ++i) {
+    const double z = draw(random), y = draw(random), x = draw(random);
+    system.v.emplace_back(x, y, z);
+  }
   for (const Vec3& v : system.v) mean += v / static_cast<double>(system.v.size());
   for (Vec3& v : system.v) v -= mean;
   return system;

@@ -112,6 +112,11 @@ inline Scene block_scene(const Features& f) {
     return type;
   };
   std::vector<std::pair<double, double>> keys;  // what tells types apart: material and role
+  // Drawn from the last axis to the first: arguments of a call have no order.
+  const auto any = [&uniform] {
+    const double z = uniform(), y = uniform(), x = uniform();
+    return Vec3(x, y, z);
+  };
   for (int z = 0; z < f.size[2]; ++z)
     for (int y = 0; y < f.size[1]; ++y)
       for (int x = 0; x < f.size[0]; ++x)
@@ -124,7 +129,7 @@ inline Scene block_scene(const Features& f) {
           while (t < keys.size() && keys[t] != key) ++t;
           if (t == keys.size()) keys.push_back(key), rule.types.push_back(type);
           scene.body.type.push_back(static_cast<uint8_t>(t));
-          const Vec3 jitter(uniform(), uniform(), uniform()), speed(uniform(), uniform(), uniform());
+          const Vec3 jitter = any(), speed = any();
           scene.body.x.push_back(at + f.jitter * jitter);
           scene.body.v.push_back(f.speed * speed);
         }

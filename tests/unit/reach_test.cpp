@@ -62,16 +62,22 @@ Scene random_scene(std::mt19937_64& random) {
   scene.steps = 10;
   scene.rule.dt = 0.1;
   scene.rule.types.resize(2);
-  if (random() % 3 == 0) scene.rule.types[1].velocity = Vec3(uniform(-4, 4), uniform(-4, 4), uniform(-4, 4));
+  const auto any = [&](double within) {
+    const double z = uniform(-within, within), y = uniform(-within, within), x = uniform(-within, within);
+    return Vec3(x, y, z);
+  };
+  if (random() % 3 == 0) scene.rule.types[1].velocity = any(4);
   if (random() % 3 == 0)
-    scene.rule.types[1].velocity = uniform(-9, 9) * Vec3::Unit(static_cast<int>(random() % 3));
-  if (random() % 2 == 0)
-    scene.reach_margin = Vec3(uniform(0, 2), uniform(0, 2), random() % 2 == 0 ? 0 : uniform(0, 2));
+    scene.rule.types[1].velocity = Vec3::Unit(static_cast<int>(random() % 3)) * uniform(-9, 9);
+  if (random() % 2 == 0) {
+    const double z = random() % 2 == 0 ? 0 : uniform(0, 2), y = uniform(0, 2), x = uniform(0, 2);
+    scene.reach_margin = Vec3(x, y, z);
+  }
   if (random() % 3 == 0) scene.reach = {Vec3(-2, -1.5, -1), Vec3(uniform(0, 3), 1, 2)};
   const bool crystal = random() % 2 == 0;  // in rows, as packings come
   for (int k = 0; k < 120; ++k) {
     scene.body.x.push_back(crystal ? Vec3(0.7 * (k % 8), 0.7 * (k / 8 % 5), 0.7 * (k / 40))
-                                   : Vec3(uniform(-5, 5), uniform(-5, 5), uniform(-5, 5)));
+                                   : any(5));
     scene.body.type.push_back(static_cast<uint8_t>(random() % 8 == 0));
   }
   return scene;
