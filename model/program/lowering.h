@@ -54,8 +54,8 @@ class Lowering {
   Scaled made(NodeId id, double unit);
   Scaled product(NodeId id, double unit);
   Scaled fixed_product(const std::vector<Factor>& factors);
-  // Operations of several operands. These are lowered from the last to the first: nodes are numbered as they come, and their
-  // numbers are part of a plan.
+  // Operations of several operands. These are lowered from the last to the first: nodes are numbered as they
+  // come, and their numbers are part of a plan.
   Scaled of_several(const RealNode& node, double unit);
   Scaled of_one(const RealNode& node, const Scaled& a);
   Scaled tabled(const RealNode& node, const Scaled& a);

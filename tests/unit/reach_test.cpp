@@ -76,8 +76,7 @@ Scene random_scene(std::mt19937_64& random) {
   if (random() % 3 == 0) scene.reach = {Vec3(-2, -1.5, -1), Vec3(uniform(0, 3), 1, 2)};
   const bool crystal = random() % 2 == 0;  // in rows, as packings come
   for (int k = 0; k < 120; ++k) {
-    scene.body.x.push_back(crystal ? Vec3(0.7 * (k % 8), 0.7 * (k / 8 % 5), 0.7 * (k / 40))
-                                   : any(5));
+    scene.body.x.push_back(crystal ? Vec3(0.7 * (k % 8), 0.7 * (k / 8 % 5), 0.7 * (k / 40)) : any(5));
     scene.body.type.push_back(static_cast<uint8_t>(random() % 8 == 0));
   }
   return scene;
