@@ -16,6 +16,8 @@ nlohmann::json read_json(const std::string& file) {
     return Json::parse(in);
   } catch (const Json::parse_error& error) {
     throw std::runtime_error(fmt::format("{}: is not JSON, at byte {}", file, error.byte));
+  } catch (const Json::out_of_range&) {
+    throw std::runtime_error(file + ": holds a number beyond those of doubles");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "hw/rtl/rtl_prefix.h"
 #include "hw/rtl/rtl_project.h"
 #include "model/base/error.h"
+#include "synth/json_file.h"
 
 namespace cuboct::synth {
 namespace {
@@ -50,9 +51,9 @@ Project read_project(const std::string& directory) {
                      kHint);
   Json json;
   try {
-    json = Json::parse(in);
-  } catch (const Json::parse_error& error) {
-    throw InputError(fmt::format("{}: is not JSON, at byte {}", file, error.byte), kHint);
+    json = read_json(file);
+  } catch (const std::runtime_error& error) {
+    throw InputError(error.what(), kHint);
   }
   // Projects of before there were versions are like the first.
   const auto version =

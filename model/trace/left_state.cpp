@@ -40,7 +40,9 @@ Widths widths_in(const Reader& in) {
   w.guard = number("guard");
   w.difference_frac = number("difference_frac");
   w.relative_velocity_frac = number("relative_velocity_frac");
-  if (w.position_frac < 1 || w.guard < 0 || w.velocity_frac() > 52)
+  constexpr int kMost = 52;  // bits of velocity_frac, which is their sum
+  if (w.position_frac < 1 || w.position_frac > kMost || w.guard < 0 || w.guard > kMost ||
+      w.velocity_frac() > kMost)
     throw InputError(in.missing("width", "guard"));
   return w;
 }

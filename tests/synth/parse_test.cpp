@@ -67,6 +67,8 @@ TEST_F(Parse, RefusesWhatIsNoReportOfNextpnr) {
   EXPECT_EQ(refusal([&] { read_nextpnr_report(file("a", R"({"fmax": {"c": 3}, "utilization": {}})")); }),
             "a: is no report of nextpnr: an entry is of another kind" + hint);
   EXPECT_EQ(refusal([&] { read_nextpnr_report(file("a", "{]")); }), "a: is not JSON, at byte 2");
+  EXPECT_EQ(refusal([&] { read_nextpnr_report(file("a", "{\"fmax\": 9e9999}")); }),
+            "a: holds a number beyond those of doubles");
   EXPECT_EQ(refusal([&] { read_nextpnr_report(file("", "") + "none"); }), "none: cannot be read");
 }
 

@@ -165,6 +165,8 @@ TEST_F(Refuse, WhatIsNoProject) {
   EXPECT_EQ(refusal(request()), "DIR: is no project of cuboct emit: it has no project.json" + hint);
   write("project.json", "{\"plan\":");
   EXPECT_EQ(refusal(request()), "DIR/project.json: is not JSON, at byte 9" + hint);
+  write("project.json", "{\"plan\": \"x\", \"nodes\": 9e9999}");
+  EXPECT_EQ(refusal(request()), "DIR/project.json: holds a number beyond those of doubles" + hint);
   write("project.json", "{\"plan\": \"x\", \"nodes\": \"many\"}");
   EXPECT_EQ(refusal(request()), "DIR/project.json: no 'nodes' as cuboct emit writes it" + hint);
   write("project.json",

@@ -119,11 +119,10 @@ TEST_F(HostileFile, AStateToBeginWithMustFitItself) {
   for (const double edge : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
     EXPECT_EQ(of_left_state([edge](hid_t f) { put_double(f, "cell_edge", edge); }),
               disagree + "no number above 0 'cell_edge'");
-  EXPECT_EQ(of_left_state([](hid_t f) {
-              const int32_t wide = 60;
-              put_number(f, "guard", H5T_NATIVE_INT32, &wide);
-            }),
-            disagree + "no width 'guard'");
+  for (const char* name : {"guard", "position_frac"})
+    for (const int32_t wide : {60, INT32_MAX})
+      EXPECT_EQ(of_left_state([&](hid_t f) { put_number(f, name, H5T_NATIVE_INT32, &wide); }),
+                disagree + "no width 'guard'");
   EXPECT_EQ(
       of_left_state([](hid_t f) { H5Adelete(f, "packing"); }),
       path_ +
