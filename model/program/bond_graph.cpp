@@ -204,7 +204,8 @@ Scaled BondGraph::threshold(const Truth& truth) {
 Scaled BondGraph::inside(int counts) {
   const int above = above_window();
   const int width = frame_.read(b_, frame_.by_class(frame_.width()), b_.frac(r2_), "width");
-  const int beyond = b_.lt(width, above), zero = b_.constant(0), outside = b_.either(b_.lt(above, zero), beyond);
+  const int beyond = b_.lt(width, above), zero = b_.constant(0),
+            outside = b_.either(b_.lt(above, zero), beyond);
   // One bit holds 0 and -1.
   const int told = b_.check(b_.select(outside, b_.constant(1), zero), 1, Fault::strength, counts);
   return {b_.eq(told, b_.constant(0)), 0, 0, 1};
