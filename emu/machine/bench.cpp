@@ -286,8 +286,7 @@ void Bench::host() {
       state_ = Host::run;
       return;
     case Host::run:
-      if (timeline_.edge + 1 == timeline_.base)
-        tell_all(control);
+      if (timeline_.edge + 1 == timeline_.base) tell_all(control);
       if (!timeline_.running()) return;
       if (interrupted()) collector_.break_off(timeline_.cycle());
       if (collector_.done()) {

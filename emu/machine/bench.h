@@ -94,7 +94,7 @@ class Bench : public sc_core::sc_module, private Monitor {
 
   bool over() const { return timeline_.over; }
   const Trace& collected() const { return collector_.trace(); }
-  double seconds() const;                                    // host time of the steps so far
+  double seconds() const;  // host time of the steps so far
   // After `simulate`; throws std::runtime_error for a run that was stuck or whose node failed.
   RunResult take_result();
 
