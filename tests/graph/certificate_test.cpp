@@ -94,7 +94,7 @@ FixedProgram small() {
   const int p = read_field(pair, program, Source::own_field, 0),
             q = read_field(pair, program, Source::other_field, 0);
   pair.counts(pair.lt(pair.mul(d, d), pair.constant(10001)));
-  const int term = pair.mul(pair.sub(p, pair.shl(q, 1)), pair.within(d), 4);
+  const int near = pair.within(d), term = pair.mul(pair.sub(p, pair.shl(q, 1)), near, 4);
   Round round{.name = "one", .when = pair.when(), .sums = {{"force", {term}}}};
   round.pair = pair.take();
   Builder finish;

@@ -45,6 +45,6 @@ said=$(env -i "$program" nowhere.toml 2>&1) || code=$?
 # What it offers is what the header says: no name of the inside, of which a program may have its own.
 library=$place
 [ "$how" = built ] || library=$work/moved/lib
-others=$(nm -DC --defined-only "$library/libcuboct.so" | awk '$2 ~ /[TBD]/' | grep -vE ' [TBD] cuboct::(Error|InputRefused|RunStopped|Simulation|crosscheck|look_for_programs_in|version)\b' || true)
+others=$(nm -DC --defined-only "$library/libcuboct.so" | awk '$2 ~ /[TBD]/' | grep -vE ' [TBD] ((typeinfo|vtable) for )?cuboct::(Error|InputRefused|RunStopped|Simulation|crosscheck|look_for_programs_in|version)\b' || true)
 [ -z "$others" ] || { echo "also offered: $others"; exit 1; }
 cat "$work/printed"

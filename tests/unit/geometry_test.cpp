@@ -146,7 +146,8 @@ TEST(Geometry, DogBone) {
 // The shape `g`.
 ShapePtr read(const std::string& text) {
   const ConfigTable root = parse_config(text, "a.toml");
-  return read_shape(root.at("g"), Regions(root));
+  const Regions regions(root);
+  return read_shape(root.at("g"), regions);
 }
 
 std::string error_of(const std::string& text) {
