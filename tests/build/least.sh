@@ -6,8 +6,10 @@
 set -euo pipefail
 root=$1 build=$2 whole=$3
 compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$whole/CMakeCache.txt")
+[ -n "$compiler" ] || { echo "$whole names no compiler"; exit 1; }
 case $("$compiler" --version) in *clang*) other=g++ ;; *) other=clang++ ;; esac
 command -v "$other" >/dev/null || other=$compiler
+[ ! -e "$build/CMakeCache.txt" ] || grep -q "^CMAKE_CXX_COMPILER:.*$other\$" "$build/CMakeCache.txt" || rm -rf "$build"  # made by another
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER="$other" -DCUBOCT_{CUDA,FITS,LIBRARY,MPI,PYTHON,STUDIES,SYNTH,SYSTEMC,TESTS,VIEW}=OFF >/dev/null
 ninja -C "$build" cuboct cuboct-machine cuboct-lattice >"$build/log" 2>&1 || { tail -n 50 "$build/log"; exit 1; }
 
