@@ -12,8 +12,7 @@ namespace cuboct {
 void fill_standard_descriptors();
 
 // What a program's main does first, and all that it does: `work`, whose exit code it returns as exit_code_of.
-// Descriptors are filled. A write beyond the limit of file
-// sizes fails, as one on a full disk does.
+// Descriptors are filled. A write beyond the limit of file sizes fails, as one on a full disk does.
 //
 // What is printed and cannot be written never stops the work. At the end a full standard output is told by
 // `tell` (by default: to standard error), and exit code 0 becomes 1. A reader of it that has left, as `head`

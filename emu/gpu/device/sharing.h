@@ -31,9 +31,8 @@ inline bool fit_together(const std::vector<Resident>& residents, int multiproces
     largest = size > largest ? size : largest;
     smallest = size < smallest ? size : smallest;
   }
-  if (residents.empty() || smallest == largest)
-    return residents.empty() ||
-           blocks <= uint64_t(residents[0].each) * static_cast<uint64_t>(multiprocessors);
+  if (smallest == largest)
+    return blocks <= uint64_t(residents[0].each) * static_cast<uint64_t>(multiprocessors);
   constexpr double kRounding = 1e-9;
   return taken <= multiprocessors * (1 - largest) + largest + kRounding;
 }
