@@ -170,7 +170,6 @@ class Flow {
       tools_.run("yosys reads the project", "elaborate", "yosys", {out_ + "/elaborate.ys"});
     });
     const Design design = read_design(tools_.path("elaborated.json"), project_.prefix);
-    fs::remove(tools_.path("elaborated.json"));
     s.module = board || lattice ? design.top : module_of(design, request_.unit);
     s.unit = base_name(s.module);
     if (lattice) s.kept = project_.prefix + "cuboct_node";
@@ -200,6 +199,7 @@ class Flow {
     const uint64_t bits = bits_below(design, s.module);
     stages_.expect(kSynthesis, synthesis_time(target_.family, bits));
     stages_.found(fmt::format("{} modules, {} bits of cells", design.modules.size(), bits));
+    fs::remove(tools_.path("elaborated.json"));
     stages_.make(kSynthesis, key_,
                  [&] { tools_.run("yosys synthesises", "yosys", "yosys", {out_ + "/synth.ys"}); });
     report_.block = read_netlist(tools_.path("netlist.json"), s.unit, design, s.module, costs);

@@ -31,6 +31,8 @@ cmp printed $results/report.json
 for file in netlist.json netlist.v place.sh timing.json unit.bit yosys.log; do
   [ -s $results/$file ] || fail "no $file"
 done
+kept=$(ls cache/cuboct/synth | wc -l)
+[ "$kept" = 4 ] || fail "of elaboration, synthesis, estimate and placement $kept are kept"
 for argument in --25k '--package CABGA381' '--seed 7' '--top cuboct_harness' '--freq 150'; do
   grep -qF -- "$argument" $results/arguments || fail "nextpnr-ecp5 was not asked for $argument"
 done

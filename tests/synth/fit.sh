@@ -102,8 +102,8 @@ grep -qx "refused.dir/mine/fit: cannot be made, as $work/refused.dir/mine is no 
 stopped() {  # program; arguments of emit
   "$cuboct" emit "${@:2}" --out stopped > printed 2> said &
   local child=$! code=0
-  for _ in $(seq 6000); do
-    pgrep -P $child "$1" > found && break
+  until pgrep -P $child "$1" > found; do
+    kill -0 $child 2> gone || fail "it ended before $1 began: $(cat said printed)"
     sleep 0.1
   done
   kill -INT $child

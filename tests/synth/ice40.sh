@@ -62,8 +62,8 @@ grep -q '^Fmax  *not known: not placed$' wide/synth/up5k/pipe/table.txt || fail 
 # An interrupt while yosys works.
 "$cuboct" synth wide --target hx8k > printed 2> said &
 child=$!
-for _ in $(seq 6000); do
-  ls wide/synth/hx8k/*/yosys.log > found 2>&1 && break
+until ls wide/synth/hx8k/*/yosys.log > found 2>&1; do
+  kill -0 $child 2> gone || fail "it ended before yosys began: $(cat said printed)"
   sleep 0.1
 done
 kill -INT $child

@@ -30,14 +30,14 @@ synth() { "$cuboct" synth project --target up5k --unit filter "$@" > printed 2> 
 # What the tools were called for since the last time.
 called() { [ "$(xargs < calls)" = "$1" ] || fail "called: $(xargs < calls), not $1"; : > calls; }
 # Seconds and the numbers of a stage are those of tools.
-said() { sed -E 's/[0-9][0-9.,]*( s,|\/[0-9]| MHz| modules| bits of)/N\1/g' said | diff - <(printf '%s' "$1") || fail "said in other words"; }
+said() { sed -E 's/[0-9]+ to [0-9]+ s/N to N s/; s/[0-9][0-9.,]*( s,|\/[0-9]| MHz| modules| bits of)/N\1/g' said | diff - <(printf '%s' "$1") || fail "said in other words"; }
 interrupted() {  # the stage that is held
   local child code=0
   echo "$1" > hold
   "$cuboct" synth project --target up5k --unit filter --seed 3 > printed 2> said &
   child=$!
-  for _ in $(seq 6000); do
-    pgrep -P $child sleep > found && break
+  until pgrep -P $child sleep > found; do
+    kill -0 $child 2> gone || fail "it ended before sleep began: $(cat said printed)"
     sleep 0.1
   done
   kill -INT $child
@@ -55,13 +55,13 @@ interrupted; nothing was written
 called ''
 interrupted synth
 said "synth: elaboration (seconds), synthesis, clock estimate (seconds), placement, bitstream (seconds)
-synth: elaboration: N s, N modules, N bits of cells; synthesis: seconds
+synth: elaboration: N s, N modules, N bits of cells; synthesis: N to N s
 interrupted; nothing was written
   hint: the stages that ended are in $work/cache/cuboct/synth: the same command goes on from there
 "
 called elaborate
 interrupted nextpnr-ice40
-said "synth: synthesis (seconds), clock estimate (seconds), placement, bitstream (seconds); known from before: elaboration
+said "synth: synthesis (N to N s), clock estimate (seconds), placement, bitstream (seconds); known from before: elaboration
 synth: synthesis: N s, LUT N/5280, FF N/5280
 synth: clock estimate: N s, N MHz
 interrupted; nothing was written
