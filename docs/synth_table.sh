@@ -75,15 +75,15 @@ PYTHON
 }
 
 boards() {
-  local example board arch target clock
-  printf '%s\t' 'scenes/boards/grips.toml with' nodes LUT FF DSP BRAM 'logic cells' 'clock, MHz' "board's clock" \
+  local example scene board arch target clock
+  printf '%s\t' 'scene of scenes/boards, arch' nodes LUT FF DSP BRAM 'logic cells' 'clock, MHz' "board's clock" \
     'cycles per step'
   printf 'RTL\n'
-  for example in icebreaker:icebreaker:up5k:12 ulx3s:board:ecp5-85:25; do
-    IFS=: read -r board arch target clock <<< "$example"
-    emit "$board" boards/grips --arch "$docs/../scenes/archs/$arch.toml" --board "$board"
-    "$cuboct" synth "$work/$board" --target "$target" --unit board --json > "$work/$board.json"
-    python3 - "$work/$board.json" "\`archs/$arch.toml\`, $target" "$clock" "$(digest "$work/$board")" <<'PYTHON'
+  for example in grips:icebreaker:icebreaker:up5k:12 grips:ulx3s:board:ecp5-85:25 heat:icebreaker:icebreaker_heat:up5k:12; do
+    IFS=: read -r scene board arch target clock <<< "$example"
+    emit "$arch" "boards/$scene" --arch "$docs/../scenes/archs/$arch.toml" --board "$board"
+    "$cuboct" synth "$work/$arch" --target "$target" --unit board --json > "$work/$arch.json"
+    python3 - "$work/$arch.json" "\`$scene\`, \`archs/$arch.toml\`, $target" "$clock" "$(digest "$work/$arch")" <<'PYTHON'
 import json, sys
 r, name, clock, digest = json.load(open(sys.argv[1])), *sys.argv[2:]
 uses, holds = r["used"], r["holds"]

@@ -22,6 +22,11 @@ constexpr int kFactorFrac = 26;
 // What an estimate may be too low by: half where a slow load rings (docs/measured/accuracy.md).
 constexpr double kTooLow = 2;
 
+std::string unit_of(const RuleProgram& text, const std::string& field) {
+  const auto at = std::ranges::find(text.declaration.particle, field, &RuleField::name);
+  return at == text.declaration.particle.end() ? "" : at->unit;
+}
+
 ProbeError error_of_field(const Scene& scene, const IntegerProgram& program, const Probe& probe) {
   ProbeError error{probe.name, {}, {}};
   if (probe.kind != Probe::Kind::field) {
@@ -37,6 +42,18 @@ ProbeError error_of_field(const Scene& scene, const IntegerProgram& program, con
     for (const Integers::Fit& fit : round) worst = std::max(worst, fit.error);
   error.curves = {{probe.field, worst + std::ldexp(1.0, -kFactorFrac)}};
   error.why = "the tables and factors of the rule's text";
+  const auto& fields = program.program.fields;
+  const auto of = std::ranges::find(fields, probe.field, &graph::Field::name);
+  const RuleProgram& text = *scene.rule.rounds->text();
+  if (of == fields.end()) return error;
+  const auto k = static_cast<size_t>(of - fields.begin());
+  if (text.particle[program.field[k]].resolution == 0) return error;
+  // In each step twelve neighbours round by half a unit at most, which has a variance of 1/12.
+  const double unit = std::ldexp(1.0, -of->frac);
+  error.curves[0].error = unit * std::sqrt(static_cast<double>(scene.steps)) +
+                          error.curves[0].error * unit * static_cast<double>(of->range.high);
+  error.curves[0].unit = unit_of(text, probe.field);
+  error.why = fmt::format("the resolution of {}", probe.field);
   return error;
 }
 

@@ -17,6 +17,7 @@
 #include "model/analysis/motion_reach.h"
 #include "model/base/error.h"
 #include "model/base/hash.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/auto_margin.h"
 
 namespace cuboct {
@@ -225,6 +226,8 @@ std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, co
     if (axes == 2) x.z() = origin.z() + 0.5 * edges[2];
     return x;
   };
+  const bool automatic = has_auto_margin(scene);
+  if (automatic && !moves(scene.rule)) margin = Vec3::Zero();
   if (axes == 2) margin.z() = 0;
   const double duration = scene.planned_duration();
   Reach reach(edges, origin, period);
@@ -240,14 +243,14 @@ std::vector<Cell> reachable_cells(const Scene& scene, const CellEdges& edges, co
   const std::vector<std::string> run{"run.duration", "run.steps"};
   const std::string shorter = "a shorter run, or one in which bodies are moved less far";
   const bool moved = check_paths(scene, edge, period);
-  const bool automatic = has_auto_margin(scene);
-  const MotionReach motion = automatic ? motion_reach(scene) : MotionReach{};
+  const bool led = automatic && moves(scene.rule);
+  const MotionReach motion = led ? motion_reach(scene) : MotionReach{};
   for (size_t id = 0; id < scene.body.size(); ++id) {
     const Vec3& x = scene.body.x[id];
     const ParticleType& type = scene.rule.types[scene.body.type[id]];
     const Vec3 displacement = type.velocity * duration;
     Ranges around{-margin, margin};
-    if (automatic) {
+    if (led) {
       const Ranges more = motion.pieces[motion.piece[id]].of(x, type);
       around = {around.low + more.low, around.high + more.high};
     }

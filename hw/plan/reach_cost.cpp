@@ -15,6 +15,7 @@
 #include "model/analysis/motion_reach.h"
 #include "model/base/error.h"
 #include "model/base/quantity_text.h"
+#include "model/rules/rounds_rule.h"
 #include "model/scene/auto_margin.h"
 
 namespace cuboct {
@@ -104,9 +105,9 @@ std::string reach_warning(const Scene& scene, const Plan& plan) {
 }
 
 std::string reach_line(const Scene& scene, const Plan& plan) {
-  return has_auto_margin(scene) && plan.lattice.size() > 0
-             ? reach_text(scene, motion_reach(scene), plan.rule.edges().longest)
-             : "";
+  if (!has_auto_margin(scene) || plan.lattice.size() == 0) return "";
+  if (!moves(scene.rule)) return "the cells with matter: no particle moves";
+  return reach_text(scene, motion_reach(scene), plan.rule.edges().longest);
 }
 
 }  // namespace cuboct

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -23,8 +24,10 @@ using graph::Builder;
 using graph::FixedProgram;
 using Source = RealSource;
 
-constexpr int kFieldBits = 46;  // of a field that goes on
-constexpr int kSumBits = 50;    // of a sum
+constexpr int kFieldBits = 46;      // of a field that goes on, where it names no resolution
+constexpr int kLeastFieldBits = 8;  // where it does
+constexpr int kLeastFactorBits = 15;
+constexpr int kSumBits = 50;  // of a sum
 constexpr int64_t kMostIds = int64_t{1} << 32, kMostSteps = int64_t{1} << 48;
 
 class Program {
@@ -53,11 +56,34 @@ class Program {
     graph::Interval room;
     int frac = 0;
   };
-  static Format format_of(Value::Kind kind, double low, double high) {
-    if (kind == Value::Kind::truth) return {{0, 1}, 0};
+  static Format format_of(const ProgramField& field, double low, double high) {
+    if (field.kind == Value::Kind::truth) return {{0, 1}, 0};
+    const double most = std::max({std::abs(low), std::abs(high), 1e-300});
     int exponent = 0;
-    std::frexp(std::max({std::abs(low), std::abs(high), 1e-300}), &exponent);
-    return {of_bits(kFieldBits), kFieldBits - 1 - exponent};
+    std::frexp(most, &exponent);
+    if (field.resolution == 0) return {of_bits(kFieldBits), kFieldBits - 1 - exponent};
+    const int frac = -std::ilogb(field.resolution), bits = frac + exponent + 1;
+    if (bits < kLeastFieldBits || bits > kFieldBits)
+      refuse_rule(
+          fmt::format("integers of '{}' would have {} bits, of units of 2^{} and numbers up to {:.4g} "
+                      "(SI): they have {} to {}",
+                      field.name, bits, -frac, most, kLeastFieldBits, kFieldBits),
+          fmt::format("a resolution that is {}", bits > kFieldBits ? "less fine" : "finer"));
+    return {of_bits(bits), frac};
+  }
+  static int bits_of(const graph::Interval& room) {
+    return static_cast<int>(std::bit_width(static_cast<uint64_t>(room.high))) + 1;
+  }
+  // Fields that are resolved coarsely need no finer factors.
+  int factor_bits() const {
+    int most = 0;
+    for (const auto* fields : {&rule_.particle, &rule_.bond})
+      for (const ProgramField& field : *fields) {
+        if (field.name == kForceField || field.kind == Value::Kind::truth) continue;
+        if (field.resolution == 0 || !field.range) return Integers::kFactorBits;
+        most = std::max(most, bits_of(format_of(field, field.range->first, field.range->second).room));
+      }
+    return most == 0 ? Integers::kFactorBits : std::clamp(most - 1, kLeastFactorBits, Integers::kFactorBits);
   }
 
   // Fields that a round makes have the range that the text gives; others that of what they begin with.
@@ -67,7 +93,7 @@ class Program {
       const ProgramField& field = rule_.particle[k];
       if (field.name == kForceField) continue;
       const auto [low, high] = range_of(field);
-      auto [room, frac] = format_of(field.kind, low, high);
+      auto [room, frac] = format_of(field, low, high);
       if (!is_made(field)) room = held_by(field, frac);
       out_.program.fields.push_back({field.name, static_cast<int>(field.numbers()), room, frac});
       out_.scales.push_back({1, frac});
@@ -199,7 +225,8 @@ class Program {
     for (int& part : d) part = b.within(part);
     const Radial radial(from.pair, frame_ ? &frame_->classes() : nullptr);
     const Scaled square = Integers::scaled(b.within(r2), 2 * D, base_.cell_edge * base_.cell_edge);
-    Lowering pair(from.pair, b, [&](const RealInput& input) { return pair_input(b, input, d); });
+    Lowering pair(
+        from.pair, b, [&](const RealInput& input) { return pair_input(b, input, d); }, factor_bits_);
     std::optional<BondGraph> bond;
     if (frame_) {
       pair.bonds(radial, square, bond.emplace(*frame_, b, r2));
@@ -243,7 +270,7 @@ class Program {
         refuse_rule(fmt::format("integers need the 'range' of the bonds' field '{}'", field.name),
                     "range = \"[LEAST, GREATEST] UNIT\" among its keys; engine reference needs none");
       const auto [low, high] = field.range.value_or(std::pair(0.0, 1.0));
-      const auto [room, frac] = format_of(field.kind, low, high);
+      const auto [room, frac] = format_of(field, low, high);
       check_ends(field, std::max(std::abs(low), std::abs(high)));
       for (uint32_t n = 0; n < field.numbers(); ++n)
         bond_place_[field.first + n] = static_cast<int>(out_.program.bonds.size());
@@ -269,7 +296,8 @@ class Program {
                 "a start that both ends see alike; engine reference runs it");
   }
   int lowered_broken(Builder& b) {
-    Lowering lowering(rule_.broken, b, [&](const RealInput& input) { return read_bond(b, input.index); });
+    Lowering lowering(
+        rule_.broken, b, [&](const RealInput& input) { return read_bond(b, input.index); }, factor_bits_);
     const Scaled truth = lowering.value(*rule_.broken_at);
     return truth.constant() ? b.constant(truth.number != 0 ? 1 : 0) : truth.node;
   }
@@ -292,7 +320,7 @@ class Program {
       const auto field = static_cast<size_t>(bond_place_[write.number]);
       const graph::Field& to = out_.program.bonds[field];
       int node = pair.integers().node_in(pair.value(write.node), 1, to.frac);
-      if (to.range != graph::Interval{0, 1}) node = b.check(node, kFieldBits, Fault::sum, lasting_);
+      if (to.range != graph::Interval{0, 1}) node = b.check(node, bits_of(to.range), Fault::sum, lasting_);
       Scaled value{node, 0, to.frac, 1};
       if (pair.needs_window(write.node))
         value = pair.integers().select(bond.inside(lasting_), value, read_bond(b, write.number));
@@ -466,7 +494,8 @@ class Program {
       const int node = graph::read_sum(b, out_.program, round, scale.sum, scale.component);
       return Scaled{node, 0, scale.term.frac, scale.term.unit};
     };
-    Lowering finish(from.finish, b, [&](const RealInput& input) { return finish_input(b, input, sum); });
+    Lowering finish(
+        from.finish, b, [&](const RealInput& input) { return finish_input(b, input, sum); }, factor_bits_);
     for (const ProgramWrite& write : from.made) {
       if (place_[write.number] < 0) continue;  // of the force
       write_field(finish, b, write, round);
@@ -497,9 +526,9 @@ class Program {
     }
   }
   // A value that is to be a field, in its own unit: what the field cannot hold is no reason to coarsen it.
-  static Scaled checked(Builder& b, const Scaled& value, int frac) {
+  static Scaled checked(Builder& b, const Scaled& value, const graph::Field& field) {
     if (value.constant() || value.unit == 1) return value;
-    const int width = kFieldBits + value.frac - frac;
+    const int width = bits_of(field.range) + value.frac - field.frac;
     if (width < 2 || width > 62) return value;
     return {b.check(value.node, width, Fault::sum), 0, value.frac, value.unit};
   }
@@ -508,9 +537,9 @@ class Program {
     const graph::Field& to = out_.program.fields[static_cast<size_t>(field)];
     const bool number = to.range != graph::Interval{0, 1};
     Scaled value = finish.value(write.node);
-    if (number) value = checked(b, value, to.frac);
+    if (number) value = checked(b, value, to);
     int node = finish.integers().node_in(value, 1, to.frac);
-    if (number) node = b.check(node, kFieldBits, Fault::sum);
+    if (number) node = b.check(node, bits_of(to.range), Fault::sum);
     const auto component = write.number - rule_.particle[out_.field[static_cast<size_t>(field)]].first;
     round.writes.push_back({field, static_cast<int>(component), b.named(node, to.name)});
   }
@@ -544,6 +573,7 @@ class Program {
   const RuleProgram& rule_;
   const FixedRule& base_;
   const ProgramStart& start_;
+  const int factor_bits_ = factor_bits();
   IntegerProgram out_;
   std::optional<BondClasses> classes_;  // of bonds that last
   std::optional<BondFrame> frame_;

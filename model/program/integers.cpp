@@ -9,8 +9,7 @@
 namespace cuboct {
 namespace {
 
-constexpr int kWide = 50;    // bits of a sum's parts beside the sign
-constexpr int kFactor = 25;  // of a product's factors; a constant one has a bit more
+constexpr int kWide = 50;  // bits of a sum's parts beside the sign
 
 }  // namespace
 
@@ -45,7 +44,7 @@ int Integers::node_of(const Scaled& a) {
   if (a.number == 0) return b_.constant(0);
   int exponent = 0;
   std::frexp(a.number, &exponent);
-  return known(a.number, 1, kFactor - exponent).node;
+  return known(a.number, 1, factor_ - exponent).node;
 }
 
 Scaled Integers::multiply(const Scaled& a, const Scaled& b) {
@@ -57,9 +56,9 @@ Scaled Integers::multiply(const Scaled& a, const Scaled& b) {
     return a.number < 0 ? negate(product) : product;
   }
   // The wider one gives way first.
-  const int bits_a = bits_of(a), bits_b = bits_of(b), most = 2 * kFactor;
-  const Scaled x = narrow(a, std::max(kFactor, most - std::min(bits_b, kFactor)));
-  const Scaled y = narrow(b, std::max(kFactor, most - std::min(bits_a, kFactor)));
+  const int bits_a = bits_of(a), bits_b = bits_of(b), most = 2 * factor_;
+  const Scaled x = narrow(a, std::max(factor_, most - std::min(bits_b, factor_)));
+  const Scaled y = narrow(b, std::max(factor_, most - std::min(bits_a, factor_)));
   return scaled(b_.mul(x.node, y.node), x.frac + y.frac, x.unit * y.unit);
 }
 
@@ -70,9 +69,9 @@ Scaled Integers::in_unit(const Scaled& a, double unit) {
   const double ratio = a.unit / target.unit;
   const auto power = static_cast<int>(std::lround(std::log2(ratio)));
   if (std::abs(std::ldexp(ratio, -power) - 1) < kSame) return {a.node, 0, a.frac - power, target.unit};
-  const Scaled x = narrow(a, kFactor);
-  const auto factor = std::llround(std::ldexp(ratio, kFactor - 1));
-  return {b_.mul(x.node, b_.constant(factor, kFactor - 1)), 0, x.frac + kFactor - 1, target.unit};
+  const Scaled x = narrow(a, factor_);
+  const auto factor = std::llround(std::ldexp(ratio, factor_ - 1));
+  return {b_.mul(x.node, b_.constant(factor, factor_ - 1)), 0, x.frac + factor_ - 1, target.unit};
 }
 
 int Integers::node_in(const Scaled& a, double unit, int frac) {
@@ -168,7 +167,7 @@ Scaled Integers::select(const Scaled& truth, const Scaled& a, const Scaled& b) {
     const double larger = std::abs(a.number) > std::abs(b.number) ? a.number : b.number;
     int exponent = 0;
     std::frexp(larger, &exponent);
-    const int frac = kFactor - exponent;
+    const int frac = factor_ - exponent;
     const int other = known(b.number, 1, frac).node, one = known(a.number, 1, frac).node;
     return {b_.select(truth.node, one, other), 0, frac, 1};
   }

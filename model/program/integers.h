@@ -26,7 +26,10 @@ struct Scaled {
 
 class Integers {
  public:
-  explicit Integers(graph::Builder& builder) : b_(builder) {}
+  static constexpr int kFactorBits = 25;
+
+  // `factor_bits`: of a product's factors beside the sign, and of a constant one; at most kFactorBits.
+  Integers(graph::Builder& builder, int factor_bits) : b_(builder), factor_(factor_bits) {}
 
   // A value of any positive unit.
   static Scaled scaled(int node, int frac, double unit);
@@ -74,6 +77,7 @@ class Integers {
   std::pair<Scaled, Scaled> alike(const Scaled& a, const Scaled& b);
 
   graph::Builder& b_;
+  int factor_;
   std::vector<Fit> fits_;
 };
 

@@ -35,8 +35,12 @@ void refuse_rule(const std::string& what, const std::string& hint) {
 }
 
 Lowering::Lowering(const RealGraph& graph, graph::Builder& builder,
-                   std::function<Scaled(const RealInput&)> input)
-    : graph_(graph), b_(builder), integers_(builder), input_(std::move(input)), made_(graph.nodes().size()) {}
+                   std::function<Scaled(const RealInput&)> input, int factor_bits)
+    : graph_(graph),
+      b_(builder),
+      integers_(builder, factor_bits),
+      input_(std::move(input)),
+      made_(graph.nodes().size()) {}
 
 void Lowering::pairs(const Radial& radial, const Scaled& r2, double reach2) {
   radial_ = &radial, r2_ = r2, reach2_ = reach2;

@@ -20,7 +20,8 @@ namespace cuboct {
 
 class Lowering {
  public:
-  Lowering(const RealGraph& graph, graph::Builder& builder, std::function<Scaled(const RealInput&)> input);
+  Lowering(const RealGraph& graph, graph::Builder& builder, std::function<Scaled(const RealInput&)> input,
+           int factor_bits = Integers::kFactorBits);
 
   // v_j - v_i by axis, which has a format of its own.
   void relative(std::function<Scaled(uint32_t)> velocity) { relative_ = std::move(velocity); }

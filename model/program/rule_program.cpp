@@ -57,7 +57,7 @@ class Understanding {
       for (const RuleText::Field& field : from) {
         if (!names.insert(field.name).second)
           field.fail(fmt::format("the name '{}' is taken", field.name), {});
-        to.push_back({field.name, field.kind, numbers, false, field.shown, field.range});
+        to.push_back({field.name, field.kind, numbers, false, field.shown, field.range, field.resolution});
         numbers += to.back().numbers();
       }
     };

@@ -26,6 +26,7 @@ struct ProgramField {
   bool kept = false;                                 // goes on from step to step
   bool shown = true;                                 // in frames
   std::optional<std::pair<double, double>> range{};  // SI
+  double resolution = 0;                             // SI, of integers at most; 0: as fine as they are
   std::vector<NodeId> start{};                       // of the graph of starts
   uint32_t numbers() const { return kind == Value::Kind::vector ? 3 : 1; }
 };

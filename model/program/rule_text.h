@@ -32,6 +32,7 @@ struct RuleText {
     std::string what;
     bool shown = true;                               // of particles: in frames
     std::optional<std::pair<double, double>> range;  // SI, least and greatest, which integers need
+    double resolution = 0;                           // SI, of integers at most; 0: as fine as they are
     std::optional<Formula> start;                    // else 0, or false
     std::function<void(const std::string& message, const std::string& hint)> fail;
   };

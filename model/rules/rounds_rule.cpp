@@ -52,6 +52,8 @@ bool has_memory(const Rule& rule) {
   return has_bond_memory(rule) || (rule.rounds != nullptr && !rule.rounds->declaration().kept.empty());
 }
 
+bool moves(const Rule& rule) { return rule.rounds == nullptr || rule.rounds->declaration().moves; }
+
 Body with_bonds(const Rule& rule, Body body, const Body& start) {
   if (!has_reference_bonds(rule) && !has_memory(rule)) return body;
   body.bonds = start.bonds ? start.bonds : std::make_shared<BondState>(BondState{start.x, {}});

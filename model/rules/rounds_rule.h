@@ -103,6 +103,8 @@ bool has_reference_bonds(const Rule& rule);
 bool has_bond_memory(const Rule& rule);
 // Whether bonds or particles keep something: a state without it is no state of the rule.
 bool has_memory(const Rule& rule);
+// Whether its particles move.
+bool moves(const Rule& rule);
 // The body with Body::bonds, where the rule's are those of the body as packed or the rule has a memory: those
 // of `start`, or, where it has none, of where its particles are.
 Body with_bonds(const Rule& rule, Body body, const Body& start);

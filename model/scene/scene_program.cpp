@@ -90,6 +90,11 @@ void check_name(const ConfigValue& value) {
     value.fail(fmt::format("'{}' ends as a particle's own or other field does", name));
 }
 
+double resolution_of(const ConfigValue& value, const RuleText::Field& field) {
+  if (field.kind == Value::Kind::truth) value.fail("a truth has no resolution");
+  return value.number({field.dimension, "one value", "0.1"}, Range::positive());
+}
+
 RuleText::Field field_of(const ConfigTable& table) {
   RuleText::Field field;
   field.name = table.key();
@@ -109,6 +114,7 @@ RuleText::Field field_of(const ConfigTable& table) {
       range->fail("'range' needs the least and the greatest value");
     field.range = {ends[0], ends[1]};
   }
+  if (const auto resolution = table.find("resolution")) field.resolution = resolution_of(*resolution, field);
   field.what = table.string_or("what", "");
   field.start = formula_at(table, "start");
   field.fail = failing(table);
@@ -325,9 +331,10 @@ void set_parameters(const ConfigTable& rule, RuleText& text) {
   }
 }
 
-// The scene's own starts of the file's fields.
-void set_starts(const ConfigTable& rule, RuleText& text) {
-  const auto own = names_at(rule, "start");
+// What the scene's own table `key` says of the file's fields.
+void set_fields(const ConfigTable& rule, const std::string& key, RuleText& text,
+                const std::function<void(RuleText::Field& field, const ConfigValue& value)>& set) {
+  const auto own = names_at(rule, key);
   if (!own) return;
   for (const std::string& name : own->names()) {
     const auto named = [&](std::vector<RuleText::Field>& fields) {
@@ -337,7 +344,7 @@ void set_starts(const ConfigTable& rule, RuleText& text) {
     RuleText::Field* of = named(text.particle);
     if (of == nullptr) of = named(text.bond);
     if (of == nullptr) own->at(name).fail(fmt::format("the rule has no field '{}'", name));
-    of->start = formula_of(own->at(name));
+    set(*of, own->at(name));
   }
 }
 
@@ -431,7 +438,11 @@ RuleChoice read_program_rule(const ConfigValue& rule, const PackingChoice* packi
     RuleText text = text_of_file(*file, potential);
     potential.read(table);
     set_parameters(table, text);
-    set_starts(table, text);
+    set_fields(table, "start", text,
+               [](RuleText::Field& field, const ConfigValue& value) { field.start = formula_of(value); });
+    set_fields(table, "resolution", text, [](RuleText::Field& field, const ConfigValue& value) {
+      field.resolution = resolution_of(value, field);
+    });
     set_lets(table, text);
     return placed(std::move(text), table);
   }

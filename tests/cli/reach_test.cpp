@@ -135,6 +135,14 @@ TEST(Reach, AutomaticFollowsTheMotion) {
   EXPECT_GT(summary["block.velocity"]["largest"], 0.5);
 }
 
+TEST(Reach, ARuleThatMovesNothingNeedsTheCellsOfItsMatter) {
+  const Bench bench(false);
+  const Answer told = bench.cuboct(
+      {"check", "scenes/boards/heat.toml", "--arch", "scenes/archs/icebreaker_heat.toml", "--machine"});
+  EXPECT_NE(told.out.find("the cells with matter: no particle moves"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("1 node of 24 slots of 103 bits"), std::string::npos) << told.out;
+}
+
 // A pair that begins pressed together: its stored energy is no motion.
 TEST(Reach, AFaultSaysThatItWasNotForeseen) {
   const Bench bench(false);

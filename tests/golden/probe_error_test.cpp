@@ -305,6 +305,30 @@ TEST(ProbeError, RefusesWhatNoFormatsKeep) {
             0U);
 }
 
+// A field that integers hold coarsely: unit times root of the steps, beside what the bar of a board leaves.
+TEST(ProbeError, OfAResolutionIsThatOfRuns) {
+  Scene scene = read_scene(CUBOCT_SOURCE_DIR "/scenes/boards/heat.toml");
+  scene.probe_every = 10;
+  const Plan plan = program_plan_of(scene, {});
+  const ProbeError error = probe_errors(scene, plan).front();
+  ASSERT_EQ(error.curves.size(), 1u);
+  EXPECT_EQ(error.why, "the resolution of T");
+  EXPECT_EQ(error.curves[0].unit, "K");
+  EXPECT_NEAR(error.curves[0].error, 0.0625 * std::sqrt(200.0), 0.01);
+  emu::LatticeRun request;
+  request.steps = request.hash_every = scene.steps;
+  request.engine.threads = 1;
+  request.probes = probe_steps_of(scene, scene.steps);
+  const std::vector<double> fixed = curve_of(emu::run_lattice(scene, plan, request).trace.curves, "left.T");
+  const std::vector<double> doubles =
+      curve_of(record(scene, scene_reference_kind(scene, plan, {}), request).trace.curves, "left.T");
+  double squares = 0;
+  for (size_t k = 0; k < fixed.size(); ++k) squares += std::pow(fixed[k] - doubles[k], 2);
+  const double measured = std::sqrt(squares / static_cast<double>(fixed.size()));
+  EXPECT_GT(measured, 0.1 * error.curves[0].error);
+  EXPECT_LT(measured, error.curves[0].error);
+}
+
 // Nothing is read of a run without steps; a grip between the marks leaves no share of a length.
 TEST(ProbeError, OfNoStepsIsNotEstimated) {
   Scene scene = parse_scene(bar(), "bar.toml");

@@ -38,6 +38,57 @@ TEST(IntegerProgram, HeatIsThatOfDoublesAndItsSumIsKeptToTheLastBit) {
   EXPECT_EQ(std::accumulate(here.begin(), here.end(), 0.0), sum);
 }
 
+TEST(IntegerProgram, AResolutionIsTheCoarsestUnitOfAField) {
+  const InIntegers made(kHeatText + "resolution.T = \"0.1 K\"\n");
+  const graph::FixedProgram& program = made.program.program;
+  ASSERT_EQ(program.fields.size(), 1u);
+  EXPECT_EQ(program.fields[0].frac, 4);
+  EXPECT_EQ(program.fields[0].range, (graph::Interval{-32768, 32767}));  // 2,000 K of 1/16 K
+  EXPECT_EQ(graph::refusal_of(graph::certificate_of(program)).what, "");
+  // The conductance is a factor of 16 bits.
+  int64_t factor = 0;
+  const std::vector<graph::Node>& nodes = program.rounds[0].pair.nodes;
+  for (const graph::Node& node : nodes)
+    for (const int k : node.op == graph::Op::mul ? node.inputs : std::vector<int>())
+      if (const graph::Node& of = nodes[static_cast<size_t>(k)]; of.op == graph::Op::constant)
+        factor = std::max(factor, of.number);
+  EXPECT_GE(factor, 1 << 14);
+  EXPECT_LT(factor, 1 << 16);
+  IntegerRun golden = made.run();
+  RoundsRun doubles(made.scene, made.scene.body, {}, 1e-3);
+  const auto field = [](Engine& run) { return std::get<RealFrame>(run.frame(false)).shown[0]; };
+  const std::vector<double> first = field(golden);
+  golden.advance(300, nullptr), doubles.advance(300, nullptr);
+  const std::vector<double> here = field(golden), there = field(doubles);
+  double off = 0;
+  for (size_t i = 0; i < here.size(); ++i) off = std::max(off, std::abs(here[i] - there[i]));
+  EXPECT_GT(off, 0.0625);
+  // Neighbours stay apart by half a unit over g dt = 0.03, 1 K; from the middle to an end there are four.
+  EXPECT_LT(off, 4);
+  EXPECT_EQ(std::accumulate(here.begin(), here.end(), 0.0), std::accumulate(first.begin(), first.end(), 0.0));
+}
+
+TEST(IntegerProgram, RefusesResolutionsThatNoFormatHas) {
+  const auto refusal = [](const std::string& resolution) {
+    return integer_refusal(kHeatText + "resolution." + resolution + "\n");
+  };
+  EXPECT_NE(refusal("T = \"1e-12 K\"")
+                .find("integers of 'T' would have 52 bits, of units of 2^-40 and numbers up "
+                      "to 2000 (SI): they have 8 to 46\n  hint: a resolution that is less fine"),
+            std::string::npos)
+      << refusal("T = \"1e-12 K\"");
+  EXPECT_NE(refusal("T = \"100 K\"").find("would have 6 bits, of units of 2^6"), std::string::npos);
+  EXPECT_NE(refusal("T = \"3 m\"").find("'T' must be"), std::string::npos) << refusal("T = \"3 m\"");
+  EXPECT_NE(refusal("T = \"0 K\"").find("'T' must be"), std::string::npos) << refusal("T = \"0 K\"");
+  EXPECT_NE(refusal("U = \"1 K\"").find("the rule has no field 'U'"), std::string::npos);
+  EXPECT_NE(integer_refusal(small_block("run = { dt = \"5 ms\", steps = 10 }\n") +
+                            "[rule]\nreach = \"1.2 mm\"\nstill = true\n"
+                            "particle.on = { kind = \"truth\", resolution = 0.5 }\n"
+                            "[[rule.round]]\nfinish.on = \"!on\"\n")
+                .find("a truth has no resolution"),
+            std::string::npos);
+}
+
 TEST(IntegerProgram, ItsFormatsAreProvenAndItsTermIsOdd) {
   const InIntegers made(kHeatText);
   const graph::FixedProgram& program = made.program.program;
