@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The checks of a node's links around any node model: what rtl/lib/cuboct_link_guard.sv is around the node's
-// core, cycle for cycle. docs/reference/links.md.
+// The checks of a node's links around any node model: what rtl/lib/links/cuboct_link_guard.sv is around the
+// node's core, cycle for cycle. docs/reference/links.md.
 #pragma once
 
 #include <memory>

@@ -87,8 +87,8 @@ class Bricks {
 
   const Cell& shape() const { return shape_; }
   uint32_t cells() const { return cells_of(shape_); }  // of a brick
-  // A node of one cell has a core of its own (rtl/lib/cuboct_node_core.sv, emu/systemc/node.h), with other
-  // phases than that of bricks. Only for what chooses a core, or knows its schedule.
+  // A node of one cell has a core of its own (rtl/lib/node/cuboct_node_core.sv, emu/systemc/node.h), with
+  // other phases than that of bricks. Only for what chooses a core, or knows its schedule.
   bool one_cell() const { return cells() == 1; }
   int cell_bits() const;                    // of a cell's number in its node; 0 if that is the only one
   uint32_t size() const { return nodes_; }  // nodes

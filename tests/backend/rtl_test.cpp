@@ -198,7 +198,7 @@ emu::NodeFactory one_flooded(const Plan& plan) {
 
 // "cuboct_halos.sv:LINE" of the assertion of that name.
 std::string place_of(const std::string& assertion) {
-  std::ifstream source(CUBOCT_SOURCE_DIR "/rtl/lib/cuboct_halos.sv");
+  std::ifstream source(CUBOCT_SOURCE_DIR "/rtl/lib/memories/cuboct_halos.sv");
   int number = 1;
   for (std::string line; std::getline(source, line); ++number)
     if (line.find(assertion + ": assert") != std::string::npos)

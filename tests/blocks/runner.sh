@@ -12,8 +12,8 @@ failed=0
 
 fresh() {  # the copy as it should be, with its pages written
   rm -rf "$work/tree"
-  mkdir -p "$work/tree/rtl/lib" "$work/tree/docs/reference/blocks"
-  cp "$source/rtl/lib/cuboct_fifo.sv" "$work/tree/rtl/lib"
+  mkdir -p "$work/tree/rtl/lib/memories" "$work/tree/docs/reference/blocks"
+  cp "$source/rtl/lib/memories/cuboct_fifo.sv" "$work/tree/rtl/lib/memories"
   cp "$source/docs/reference/blocks/README.md" "$source/$page" "$work/tree/docs/reference/blocks"
   (cd "$work/tree" && "$python" "$source/tests/blocks/pages" --root . > log 2>&1) || { cat "$work/tree/log"; exit 1; }
 }
@@ -44,17 +44,17 @@ fresh
 expect ports 0 "2 pages: "
 expect cycles 0 "none differs"
 
-edit rtl/lib/cuboct_fifo.sv 's/pop_i/take_i/g'
+edit rtl/lib/memories/cuboct_fifo.sv 's/pop_i/take_i/g'
 expect ports 1 "$page: cuboct_fifo: 'take_i' is missing on the page" \
   "$page: cuboct_fifo: 'pop_i' is on the page, but not in the module" "to write the pages anew: tests/blocks/pages"
 expect cycles 2 "'pop_i' is no input of cuboct_fifo"
 
 fresh
-edit rtl/lib/cuboct_fifo.sv 's/output logic            full_o,/output logic [1:0]      full_o,/'
+edit rtl/lib/memories/cuboct_fifo.sv 's/output logic            full_o,/output logic [1:0]      full_o,/'
 expect ports 1 "$page: cuboct_fifo: 'full_o' is on the page"
 
 fresh
-edit rtl/lib/cuboct_fifo.sv 's/parameter int Depth = 16 /parameter int Depth = 32 /'
+edit rtl/lib/memories/cuboct_fifo.sv 's/parameter int Depth = 16 /parameter int Depth = 32 /'
 expect ports 1 "$page: cuboct_fifo: 'Depth' is on the page"
 
 fresh
@@ -62,19 +62,19 @@ edit $page "/^| \`empty_o\` | out/d"
 expect ports 1 "$page: cuboct_fifo: 'empty_o' is missing on the page"
 
 fresh
-edit rtl/lib/cuboct_fifo.sv 's|// with push_i||'
-expect ports 2 "rtl/lib/cuboct_fifo.sv: cuboct_fifo: 'data_i' has no comment at its line"
+edit rtl/lib/memories/cuboct_fifo.sv 's|// with push_i||'
+expect ports 2 "rtl/lib/memories/cuboct_fifo.sv: cuboct_fifo: 'data_i' has no comment at its line"
 
 fresh
-edit rtl/lib/cuboct_fifo.sv 's|// with push_i$|&\n                           // goes on|'
+edit rtl/lib/memories/cuboct_fifo.sv 's|// with push_i$|&\n                           // goes on|'
 expect ports 1 "| with push_i goes on |"
 
 fresh
-sed 's/cuboct_fifo/cuboct_other/' "$work/tree/rtl/lib/cuboct_fifo.sv" > "$work/tree/rtl/lib/cuboct_other.sv"
+sed 's/cuboct_fifo/cuboct_other/' "$work/tree/rtl/lib/memories/cuboct_fifo.sv" > "$work/tree/rtl/lib/memories/cuboct_other.sv"
 expect ports 2 "module cuboct_other is on no page of docs/reference/blocks"
 
 fresh
-edit rtl/lib/cuboct_fifo.sv 's/assign full_o  = full_q/assign full_o  = full_d/'
+edit rtl/lib/memories/cuboct_fifo.sv 's/assign full_o  = full_q/assign full_o  = full_d/'
 expect cycles 1 "cuboct_fifo: the page shows" "to write the pages anew: tests/blocks/pages"
 expect ports 0
 

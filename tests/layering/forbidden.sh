@@ -18,11 +18,11 @@ grep -q 'cli/run/check.h:[0-9]*: cli/run must not include cli/study/budget.h' <<
 grep -q 'cli/help.h: hw/program/options.cpp alone includes CLI11' <<<"$out"
 
 # So must the check of columns see a line that is one too long.
-printf '// %118s\n' x >> "$copy/rtl/lib/cuboct_ram.sv"
+printf '// %118s\n' x >> "$copy/rtl/lib/memories/cuboct_ram.sv"
 if out=$(bash "$1/tests/layering/columns.sh" "$copy"); then
   echo "a line of 121 columns was not seen"; exit 1
 fi
-grep -q 'rtl/lib/cuboct_ram.sv:[0-9]*: 121 columns' <<<"$out"
+grep -q 'rtl/lib/memories/cuboct_ram.sv:[0-9]*: 121 columns' <<<"$out"
 
 # And that of programs a main without its standard streams.
 echo 'int main() { return 0; }' > "$copy/cli/other.cpp"

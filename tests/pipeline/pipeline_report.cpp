@@ -4,7 +4,6 @@
 // usage: pipeline_report rules|laws DIR [NAME...]   DIR is empty or new
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -46,7 +45,7 @@ void write_project(const std::string& dir, const test::Pipeline& p) {
     files.push_back("rtl/" + name + ".sv");
     write_text((fs::path(dir) / files.back()).string(), text);
   };
-  for (const char* name : {"lib/cuboct_mult", "pipeline/cuboct_leading_zeros"})
+  for (const char* name : {"lib/arithmetic/cuboct_mult", "pipeline/cuboct_leading_zeros"})
     add(fs::path(name).filename(), read_text(kRoot + "/rtl/" + name + ".sv"));
   for (const auto& module : pipeline::print_pipeline("cuboct_node", p.graph, p.outputs, p.schedule))
     add(module.name, module.text);

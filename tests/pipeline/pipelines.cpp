@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "emu/verilated/compile.h"
@@ -96,7 +95,7 @@ class Model {
         write_text((fs::path(dir) / "rtl" / (name + ".sv")).string(), text);
         list += "rtl/" + name + ".sv\n";
       };
-      add("cuboct_mult", read_text(CUBOCT_SOURCE_DIR "/rtl/lib/cuboct_mult.sv"));
+      add("cuboct_mult", read_text(CUBOCT_SOURCE_DIR "/rtl/lib/arithmetic/cuboct_mult.sv"));
       add("cuboct_leading_zeros", read_text(CUBOCT_SOURCE_DIR "/rtl/pipeline/cuboct_leading_zeros.sv"));
       for (const Pipeline& p : pipelines)
         for (const pipeline::Module& module :

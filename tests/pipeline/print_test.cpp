@@ -190,7 +190,7 @@ void expect_read_by_all_tools(const std::string& rule) {
   for (const Pipeline& p : all) {
     const fs::path dir = fs::path(testing::TempDir()) / "cuboct_pipeline_lint" / p.name;
     fs::create_directories(dir);
-    std::string files = CUBOCT_SOURCE_DIR "/rtl/lib/cuboct_mult.sv " CUBOCT_SOURCE_DIR
+    std::string files = CUBOCT_SOURCE_DIR "/rtl/lib/arithmetic/cuboct_mult.sv " CUBOCT_SOURCE_DIR
                                           "/rtl/pipeline/cuboct_leading_zeros.sv";
     for (const pipeline::Module& module : pipeline::print_pipeline(p.name, p.graph, p.outputs, p.schedule)) {
       write_text((dir / (module.name + ".sv")).string(), module.text);

@@ -12,7 +12,7 @@ grep -rhoE 'docs/[a-z/]+\.md' "$4" --include=*.sv --include=README.md | sort -u 
 done
 ! grep -nE '\]\([^#)]' "$4"/docs/reference/*.md
 rm -r "$4/docs"
-for module in "$3"/lib/*.sv "$3"/lattice/*.sv; do
+for module in "$3"/lib/*/*.sv "$3"/lattice/*.sv; do
   copy="$4/rtl/$(basename "$module")"
   [ -e "$copy" ] || continue
   cmp "$module" "$copy"

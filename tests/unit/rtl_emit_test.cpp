@@ -50,11 +50,13 @@ TEST(RtlEmit, CopiesTheLibraryByteForByte) {
           BoardChoice{.name = "", .velocities = false, .bus = "wishbone"}}) {
       const auto setup = make_setup(held, arch);
       emit_rtl(setup.plan, setup.initial, root.string(), {.board = board});
+      std::vector<fs::path> folders{library / "lattice", library / "pipeline", library / "board",
+                                    library / "bus", library / "board" / board.name};
+      for (const auto& room : fs::directory_iterator(library / "lib")) folders.push_back(room);
       size_t copies = 0;
       for (const auto& entry : fs::recursive_directory_iterator(root)) {
         const fs::path name = entry.path().filename();
-        for (const fs::path& folder : {library / "lib", library / "lattice", library / "pipeline",
-                                       library / "board", library / "bus", library / "board" / board.name})
+        for (const fs::path& folder : folders)
           if (!name.empty() && fs::is_regular_file(folder / name)) {
             EXPECT_EQ(read_text(entry.path()), read_text(folder / name)) << name;
             ++copies;

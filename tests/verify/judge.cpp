@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
 #include "emu/systemc/node.h"
 #include "emu/verilated/verilated_node.h"
+#include "hw/rtl/rtl_library.h"
 #include "model/base/output.h"
 #include "tests/verify/small_case.h"
 
@@ -54,7 +56,7 @@ void put_over(const fs::path& changed, const fs::path& dir) {
     const fs::path to = dir / "rtl" / name;
     if (!fs::exists(to)) {
       // A module of the library that this plan does not use is not missed.
-      if (fs::exists(fs::path(CUBOCT_SOURCE_DIR) / "rtl/lib" / name)) continue;
+      if (std::ranges::find(rtl_library(), name, &RtlSource::name) != rtl_library().end()) continue;
       first += "rtl/" + name + "\n";
     }
     fs::copy_file(path, to, fs::copy_options::overwrite_existing);
