@@ -102,6 +102,7 @@ module brick_neighbours_formal #(
   (* keep *) logic       tap_exchange_0, tap_exchange_1, tap_migrating_0, tap_migrating_1;
   (* keep *) logic       tap_sent_0, tap_sent_1, tap_pass_1;  // of the relay
   (* keep *) logic [2:0] tap_axis_0, tap_axis_1;              // of the sequencer
+  (* keep *) logic       tap_last_0, tap_last_1;              // of the steps
   (* keep *) logic [2:0] tap_migrate_0, tap_migrate_1;        // state of the migration
   (* keep *) logic [1:0] tap_axis_halo_0, tap_axis_halo_1, tap_axis_ended_0, tap_axis_ended_1;
   // by face: a record, an end comes
@@ -225,6 +226,8 @@ module brick_neighbours_formal #(
       i_run:    assert ((tap_state_0 < 4'd8) == (tap_steps_0 != '0) && (tap_state_1 < 4'd8) == (tap_steps_1 != '0));
       i_sent:   assert ((!tap_sent_0 || tap_state_0 <= 4'd1) && (!tap_sent_1 || tap_state_1 <= 4'd1));
       i_pass:   assert (!tap_pass_1 || (tap_state_1 <= 4'd1 && !tap_sent_1));
+      i_last:   assert ((tap_state_0 == '0 || tap_state_0 > 4'd7 || tap_last_0 == (tap_steps_0 == 32'd1))
+                        && (tap_state_1 == '0 || tap_state_1 > 4'd7 || tap_last_1 == (tap_steps_1 == 32'd1)));
       i_phase:  assert ((tap_migrate_0 == 3'd0 || tap_state_0 == MigrateX || tap_state_0 == MigrateY)
                         && (tap_migrate_1 == 3'd0 || tap_state_1 == MigrateX || tap_state_1 == MigrateY)
                         && tap_migrate_0 <= Land && tap_migrate_1 <= Land);
