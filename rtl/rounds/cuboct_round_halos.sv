@@ -30,7 +30,7 @@ module cuboct_round_halos #(
   output logic [Rounds*Faces-1:0]    halo_end_o,     // by round, face: complete; always where there is no link
   output logic [Faces*CountBits-1:0] halo_count_o,   // by face: records of the first round
   output logic [Faces-1:0]           halo_came_o,    // by face: one of them comes
-  input  logic                       stream_read_i,  // the streamer asks
+  input  logic [Faces-1:0]           stream_read_i,  // by face: the streamer asks
   input  logic [AddrBits-1:0]        stream_addr_i,  // with stream_read_i
   output logic [Faces*CandidateBits-1:0] stream_data_o,  // by face, from the next cycle on, until it reads again
   // For the relays of the rounds, of all axes but the last.
@@ -116,8 +116,8 @@ module cuboct_round_halos #(
       .Arrival(0), .AddrBits(AddrBits), .CountBits(CountBits)
     ) u_inbox (
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid[0]), .halo_i(moved), .count_o(stream_count),
-      .read_i(stream_read_i), .addr_i(stream_addr_i), .halo_o(streamed), .relay_append_i(1'b0), .relay_record_i(moved),
-      .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i(relay_read_i[0]),
+      .read_i(stream_read_i[f]), .addr_i(stream_addr_i), .next_i(1'b0), .halo_o(streamed), .relay_append_i(1'b0),
+      .relay_record_i(moved), .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i(relay_read_i[0]),
       .relay_clear_i(relay_clear), .relay_addr_i(relay_addr_i[AddrBits-1:0]),
       .relay_ahead_i({AddrBits{1'b0}}), .relay_halo_o(relayed_first),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
@@ -158,7 +158,7 @@ module cuboct_round_halos #(
         end
         cuboct_ram #(.Bits(Bits), .Depth(Depth), .AddrBits(AddrBits)) u_numbers (
           .clk_i, .write_i(halo_valid[k]), .write_addr_i(place_q), .write_data_i(halo[Bits-1:0]),
-          .read_i(stream_read_i), .clear_i(1'b0), .read_addr_i(stream_addr_i),
+          .read_i(stream_read_i[f]), .clear_i(1'b0), .read_addr_i(stream_addr_i),
           .read_data_o(stream_data_o[f*CandidateBits+Lsb +: Bits])
         );
         if (Relayed != 0) begin : gen_relay

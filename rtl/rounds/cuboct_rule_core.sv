@@ -116,7 +116,8 @@ module cuboct_rule_core #(
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
   logic [PairBits-1:0]            stream_data;
-  logic                           stream_read, main_read, migrate_read;
+  logic                           row_read, main_read, migrate_read;
+  logic [Faces:0]                 stream_read;  // of own particles, and by face
   logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot_next;
   logic [ForcePipes*PairBits-1:0] pipe_data;
   logic [ForcePipes*IdBits-1:0]   kick_id;
@@ -163,7 +164,8 @@ module cuboct_rule_core #(
     .BondLsb(BondLsb), .BondBits(BondBits)
   ) u_slots (
     .clk_i, .write_i(own_write), .write_slot_i(own_write_slot), .write_data_i(own_write_data),
-    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
+    .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data),
+    .stream_read_i(stream_read[0]), .row_read_i(row_read),
     .stream_slot_i(stream_slot), .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data),
     .pipe_slot_i(issue_slot), .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
@@ -186,7 +188,8 @@ module cuboct_rule_core #(
     .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_halos (
     .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .halo_clear_i(last_force),
-    .halo_end_o(halo_end), .halo_count_o(halo_count), .halo_came_o(halo_came), .stream_read_i(stream_read),
+    .halo_end_o(halo_end), .halo_count_o(halo_count), .halo_came_o(halo_came),
+    .stream_read_i(stream_read[Faces:1]),
     .stream_addr_i(stream_addr), .stream_data_o(stream_halos), .relay_read_i(relay_read), .relay_clear_i(relay_clear),
     .relay_addr_i(relay_addr), .relay_data_o(relay_halos), .migrating_i(in_migrate), .migrate_clear_i(migrate_clear),
     .migrate_empty_o(migrate_empty), .migrate_some_next_o(some_next), .migrate_over_next_o(over_next),
@@ -337,7 +340,9 @@ module cuboct_rule_core #(
   logic [CandidateBits-1:0] issue_candidate;
   logic [ForcePipes-1:0]    issue, pipe_busy;
   logic                     finder_done, present, force_stall;
-  logic [Faces:0]           complete;
+  logic [Faces:0]           complete, stream_next;
+  logic                     unused_next;
+  assign unused_next = ^stream_next;
   assign complete[0] = 1'b1;
   for (genvar h = 0; h < Faces; h++) begin : gen_complete
     assign complete[h+1] = past_next[h/2];
@@ -350,9 +355,9 @@ module cuboct_rule_core #(
     .Bonds(Bonds), .IdBits(IdBits), .IdLsb(IdInCandidate)
   ) u_finder (
     .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_done), .own_count_i(own_count_q), .complete_next_i(complete),
-    .came_i(halo_came), .again_i(!round[Rounds-1]), .counts_i(halo_count), .read_o(stream_read),
-    .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate), .halos_i(stream_halos), .row_o(row),
-    .row_data_i(row_data), .candidate_o(issue_candidate), .issue_o(issue), .issue_slot_o(issue_slot),
+    .came_i(halo_came), .again_i(!round[Rounds-1]), .counts_i(halo_count), .read_o(stream_read), .next_o(stream_next),
+    .row_read_o(row_read), .slot_o(stream_slot), .addr_o(stream_addr), .own_i(own_candidate), .halos_i(stream_halos),
+    .row_o(row), .row_data_i(row_data), .candidate_o(issue_candidate), .issue_o(issue), .issue_slot_o(issue_slot),
     .present_o(present), .stall_o(force_stall), .done_o(finder_done)
   );
   assign force_event_o = {issue, issue != '0, present, force_stall, engine_runs};

@@ -18,6 +18,7 @@ module filter_formal #(
   input logic                               present_i,
   input logic [Axes*(PositionFrac+2):0]     candidate_i,  // and one bit of the rest
   input logic                               row_i,
+  input logic                               row_new_i,     // it may not be that of the candidate before
   input logic                               own_i,
   input logic [2:0]                         slot_i,
   input logic                               full_i,
@@ -42,15 +43,19 @@ module filter_formal #(
   logic [FilterLanes-1:0]                     mask;
   always_comb begin
     assume (own_count <= Slots[3:0]);
-    if (present_i) assume (running_q);
+    if (present_i) assume (running_q && (row_new_i || (shown_q && row_i == last_row_q)));
   end
   // The memories' output registers. In a stalled cycle the streamer reads nothing (proof `streamer`).
   logic [CandidateBits-1:0] answer_q;
   logic [RowBits-1:0]       answer_row_q;
+  logic                     shown_q, last_row_q;  // the row that was read last
   always_ff @(posedge clk_i) begin
+    if (!running_q) shown_q <= 1'b0;
+    else if (present_i && !stall) shown_q <= 1'b1;
     if (present_i && !stall) begin
-      answer_q     <= candidate_i;
-      answer_row_q <= row_i ? own[RowBits +: RowBits] : own[0 +: RowBits];
+      answer_q   <= candidate_i;
+      last_row_q <= row_i;
+      if (row_new_i) answer_row_q <= row_i ? own[RowBits +: RowBits] : own[0 +: RowBits];
     end
   end
   cuboct_filter #(
@@ -59,7 +64,7 @@ module filter_formal #(
     .FilterLanes(FilterLanes), .RowBits(1), .SlotBits(3), .CountBits(4), .Bonds(Bonds),
     .IdBits(IdBits), .IdLsb(0)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .present_i, .row_i, .own_i, .slot_i, .own_count_i(own_count),
+    .clk_i, .rst_ni(running_q), .present_i, .row_i, .row_new_i, .own_i, .slot_i, .own_count_i(own_count),
     .candidate_i(answer_q), .row_data_i(answer_row_q), .full_i, .stall_o(stall), .push_o(push),
     .candidate_o(candidate), .row_o(row), .mask_o(mask), .busy_o(busy)
   );
@@ -106,7 +111,7 @@ module filter_formal #(
 
   // The watched candidate's register, the first ... the fourth, or gone. All move unless the queue stalls them.
   logic [2:0]               place_q;  // 0: not there
-  logic                     watched_q, row_q;
+  logic                     watched_q, row_q, kept_q;  // kept: its row was that of the candidate before
   logic [CandidateBits-1:0] candidate_q;
   logic [FilterLanes-1:0]   passes_q;
   logic [3:0]               held_q;   // registers that hold something, watched or not
@@ -123,6 +128,7 @@ module filter_formal #(
         watched_q   <= 1'b1;
         candidate_q <= candidate_i;
         row_q       <= row_i;
+        kept_q      <= !row_new_i;
         passes_q    <= passes;
       end
     end
@@ -139,6 +145,7 @@ module filter_formal #(
       end
       c_all:   cover (push && place_q == 3'd4 && passes_q == '1);
       c_none:  cover (place_q == 3'd4 && passes_q == '0 && own_count == Slots[3:0]);
+      c_kept:  cover (push && place_q == 3'd4 && kept_q && passes_q != '0);
       c_stall: cover (stall && place_q == 3'd3 && present_i);
     end
   end

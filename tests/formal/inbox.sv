@@ -3,7 +3,7 @@
 // for address k; the streamer's answer stays until the memory is read for someone else. A watched particle,
 // any of those pushed, comes out once, after those before it and before those after it, unchanged; it counts
 // from the second cycle after its push on. Neither stream touches what the other one keeps. Arrival: the relay's
-// records come apart from the streamer's, and the streamer's answer comes with its next question. Ahead: the relay's
+// records come apart from the streamer's, and the streamer's answer is shown when it is told to. Ahead: the relay's
 // answer is what stood where the memory was asked the time before, and it is asked for address 0 with each clear.
 module inbox_formal #(
   parameter int HaloDepth    = 2,
@@ -21,6 +21,7 @@ module inbox_formal #(
   input logic                    relay_append_i,
   input logic [HaloBits-1:0]     relay_record_i,
   input logic                    read_i,
+  input logic                    next_i,
   input logic [7:0]              addr_i, relay_addr_i,
   input logic                    relay_read_i,
   input logic                    relay_clear_i,
@@ -45,7 +46,7 @@ module inbox_formal #(
     .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(HaloDepth), .Capacity(Capacity),
     .Relayed(Relayed), .Arrival(Arrival), .Ahead(Ahead), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_dut (
-    .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i,
+    .clk_i, .rst_ni(running_q), .clear_i, .append_i, .halo_i, .count_o(count), .read_i, .next_i,
     .addr_i(addr_i[AddrBits-1:0]), .halo_o(halo), .relay_append_i, .relay_record_i, .relay_count_o(relay_count),
     .relay_read_i, .relay_clear_i,
     .relay_addr_i(relay_addr_i[AddrBits-1:0]), .relay_ahead_i(relay_addr_i[AddrBits-1:0]),
@@ -71,7 +72,7 @@ module inbox_formal #(
   logic                               counts, relay_counts, cleared_q, asked_q, shown_halo_q, halo_known, relayed_q;
   logic                               kept_q;
   logic [HaloBits-1:0]                value_q, relay_value_q, answer_q, shown_answer_q, halo_answer, relay_answer_q;
-  // Arrival: an answer is shown with the next question.
+  // Arrival: an answer is shown when it is told to.
   assign halo_known   = (Arrival != 0) ? shown_halo_q : asked_q;
   assign halo_answer  = (Arrival != 0) ? shown_answer_q : answer_q;
   logic                after_q, relay_asked;  // Ahead: what the memory was asked for last
@@ -95,10 +96,10 @@ module inbox_formal #(
       else if (append_i) count_q <= count_q + 1'b1;
       if (clear_i) relay_count_q <= '0;
       else if (relay_append_i) relay_count_q <= relay_count_q + 1'b1;
-      if (read_i) shown_halo_q <= asked_q;
+      if (next_i) shown_halo_q <= asked_q;
       cleared_q <= cleared_q || (clear_i && count_q == HaloDepth[CountBits-1:0]);
       if (read_i) asked_q <= counts && addr_i[AddrBits-1:0] == number;
-      kept_q    <= halo_known && !read_i;  // the answer stays
+      kept_q    <= halo_known && !((Arrival != 0) ? next_i : read_i);  // the answer stays
       if (relay_read_i) relayed_q <= (Ahead != 0) ? after_q : relay_asked;
       if (relay_read_i && relay_clear_i) relayed_q <= 1'b1;
       if (relay_read_i) after_q <= relay_asked;
@@ -106,7 +107,7 @@ module inbox_formal #(
     if (append_i && count_q == {{(CountBits - AddrBits) {1'b0}}, number}) value_q <= halo_i;
     if (relay_append_i && relay_count_q == {{(CountBits - AddrBits) {1'b0}}, number}) relay_value_q <= relay_record_i;
     if (read_i) answer_q <= value_q;
-    if (read_i) shown_answer_q <= answer_q;
+    if (next_i) shown_answer_q <= answer_q;
     if (relay_read_i) relay_answer_q <= (Ahead != 0) ? after_value_q : relay_value_q;
     if (relay_read_i) after_value_q <= relay_value_q;
     if (relay_read_i && relay_clear_i) relay_answer_q <= '0;

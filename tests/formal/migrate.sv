@@ -152,7 +152,7 @@ module migrate_formal #(
       .HaloBits(1), .ParticleBits(ParticleBits), .HaloDepth(1), .Capacity(Capacity), .Relayed(0),
       .AddrBits(1), .CountBits(CountBits)
     ) u_inbox (
-      .clk_i, .rst_ni(running_q), .clear_i(1'b0), .append_i(1'b0), .halo_i(1'b0), .read_i(1'b0),
+      .clk_i, .rst_ni(running_q), .clear_i(1'b0), .append_i(1'b0), .halo_i(1'b0), .read_i(1'b0), .next_i(1'b0),
       .addr_i(1'b0), .relay_addr_i(1'b0), .migrating_i(active_q || (Early != 0 && begins)), .push_i(push[f]),
       .particle_i(arrive_data_i[f*ParticleBits +: ParticleBits]), .full_o(full[f]), .pop_i(pop[f]),
       .particle_o(arrived[f*ParticleBits +: ParticleBits]), .empty_o(empty[f])

@@ -76,7 +76,8 @@ module round_halos_formal #(
   ) u_dut (
     .clk_i, .rst_ni(running_q), .has_link_i(has_link), .link_valid_i(valid_i), .link_end_i(end_i),
     .link_data_i(data_i), .halo_clear_i(clear_i), .halo_end_o(halo_end), .halo_count_o(halo_count),
-    .halo_came_o(halo_came), .stream_read_i(read_i), .stream_addr_i(addr_i[AddrBits-1:0]), .stream_data_o(stream_data),
+    .halo_came_o(halo_came), .stream_read_i({(2*Axes){read_i}}), .stream_addr_i(addr_i[AddrBits-1:0]),
+    .stream_data_o(stream_data),
     .relay_read_i, .relay_clear_i, .relay_addr_i(relay_addr), .relay_data_o(relay_data), .migrating_i,
     .migrate_clear_i, .migrate_empty_o(empty), .migrate_some_next_o(some_next), .migrate_over_next_o(over_next),
     .migrate_data_o(particles), .migrate_pop_i(pop)

@@ -17,6 +17,7 @@ module slots_formal #(
   input logic [4:0] slot_i,
   input logic [7+3*Bonds:0] data_i,  // x[2] y[2] seen[1] id[2], by place partner[2] kind[1], rest[1]
   input logic       stream_read_i,
+  input logic       row_read_i,
   input logic       first_read_i,   // of two streamers the first, which reads another row
   input logic [4:0] first_row_i,
   input logic [4:0] main_i, stream_i,
@@ -48,13 +49,13 @@ module slots_formal #(
   logic [ForcePipes*Seen-1:0]     pipe_data;
   logic [ForcePipes*2-1:0]        fault_id;
   logic [Streamers*FilterLanes*Lane-1:0] row_data;
-  logic [Streamers-1:0]               stream_read;
+  logic [Streamers-1:0]               row_read;
   logic [Streamers*RowBits-1:0]       row;
   integer                         l;
   always_comb begin
-    stream_read              = {Streamers{first_read_i}};
+    row_read                 = {Streamers{first_read_i}};
     row                      = {Streamers{first_row_i[RowBits-1:0]}};
-    stream_read[Streamers-1] = stream_read_i;
+    row_read[Streamers-1]    = row_read_i;
     row[(Streamers-1)*RowBits +: RowBits] = row_i[RowBits-1:0];
     pipe_slot  = '0;
     fault_slot = '0;
@@ -68,8 +69,8 @@ module slots_formal #(
     .Bonds(Bonds), .BondLsb(7), .BondBits(3)
   ) u_dut (
     .clk_i, .write_i, .write_slot_i(slot_i[SlotBits-1:0]), .write_data_i(data_i),
-    .main_read_i(1'b1), .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i(stream_read),
-    .stream_slot_i(stream_i[SlotBits-1:0]), .stream_data_o(stream_data), .row_i(row),
+    .main_read_i(1'b1), .main_slot_i(main_i[SlotBits-1:0]), .main_data_o(main_data), .stream_read_i,
+    .stream_slot_i(stream_i[SlotBits-1:0]), .stream_data_o(stream_data), .row_read_i(row_read), .row_i(row),
     .row_data_o(row_data), .pipe_slot_i(pipe_slot), .pipe_data_o(pipe_data), .fault_slot_i(fault_slot),
     .fault_id_o(fault_id)
   );
@@ -96,17 +97,17 @@ module slots_formal #(
     ask_q    <= written_q && !writes && main_i == watched;
     pipe_q   <= written_q && !writes && pipe_i == watched;
     fault_q  <= written_q && !writes && fault_i == watched;
-    if (stream_read[0]) begin
+    if (stream_read_i) begin
       stream_q       <= written_q && !writes && stream_i == watched;
       stream_value_q <= value_q[Seen-1:0];
     end
-    if (stream_read_i) begin
+    if (row_read_i) begin
       lane_q         <= written_q && !writes && row_i == watched_row;
       lane_value_q   <= lane_value;
     end else if (Rows == 1 && writes) begin
       lane_q <= 1'b0;
     end
-    later_q <= stream_q && !stream_read[0] && !stream_read_i && (Rows == 1 || writes);  // an answer stays
+    later_q <= stream_q && !stream_read_i && !row_read_i && (Rows == 1 || writes);  // an answer stays
   end
   logic [Lane-1:0] lane_data;
   always_comb begin

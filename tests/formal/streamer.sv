@@ -101,7 +101,7 @@ module streamer_formal #(
   end
   logic [AddrBits-1:0] addr, slot;
   logic [RowBits-1:0]  row;
-  logic                present;
+  logic                present, row_new;
   cuboct_streamer #(
     .Segments(Segments), .Arrival(Arrival), .Rounds(Rounds), .FilterLanes(FilterLanes), .RowBits(RowBits),
     .SlotBits(AddrBits), .AddrBits(AddrBits), .CountBits(CountBits)
@@ -109,7 +109,8 @@ module streamer_formal #(
     .clk_i, .rst_ni(running_q), .run_i(run_q), .restart_i(restart), .stall_i, .own_i(counts_q[0 +: CountBits]),
     .complete_next_i(complete_next), .came_i(come[Segments-1:1]), .again_i(again),
     .counts_i(came_q[Segments*CountBits-1:CountBits]),
-    .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .past_o(past)
+    .pick_o(pick), .addr_o(addr), .slot_o(slot), .row_o(row), .present_o(present), .row_new_o(row_new),
+    .past_o(past)
   );
 
   // Of the picked segment.
@@ -175,6 +176,15 @@ module streamer_formal #(
     moves_q <= running_q && run_q && !stall_i && !past && !waits;
   end
 
+  // The row that was presented last since the engine runs.
+  logic               shown_q;
+  logic [RowBits-1:0] last_row_q;
+  always_ff @(posedge clk_i) begin
+    if (!running_q || !run_q || restart) shown_q <= 1'b0;
+    else if (present) shown_q <= 1'b1;
+    if (present) last_row_q <= row;
+  end
+
   logic again_q, round_q, rounds_q;  // a second step; a second round; a step with two of them was
   always_ff @(posedge clk_i) begin
     again_q  <= running_q && (again_q || restart);
@@ -189,6 +199,7 @@ module streamer_formal #(
         a_next: assert (!all && segment == next_segment && {1'b0, addr} == next_record
                         && {{(CountBits + 1 - RowBits) {1'b0}}, row} == next_row && slot == addr);
       end
+      if (present) a_row: assert (row_new == !(shown_q && row == last_row_q));
       if (past) a_past: assert (all && complete == '1);
       if (moves_q) a_progress: assert (rank > rank_q);
       c_empty: cover (restart && counts_q == '0);

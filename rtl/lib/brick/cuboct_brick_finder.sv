@@ -132,9 +132,9 @@ module cuboct_brick_finder #(
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(AllBits), .FilterLanes(FilterLanes),
     .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits)
   ) u_filter (
-    .clk_i, .rst_ni, .present_i(present), .row_i(row), .own_i(same), .slot_i(record), .own_count_i(count_q),
-    .candidate_i(candidate), .row_data_i, .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out),
-    .row_o(row_out), .mask_o(mask_out), .busy_o(filter_busy)
+    .clk_i, .rst_ni, .present_i(present), .row_i(row), .row_new_i(1'b1), .own_i(same), .slot_i(record),
+    .own_count_i(count_q), .candidate_i(candidate), .row_data_i, .full_i(full), .stall_o(stall), .push_o(push),
+    .candidate_o(candidate_out), .row_o(row_out), .mask_o(mask_out), .busy_o(filter_busy)
   );
 
   cuboct_split #(.FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .SlotBits(SlotBits)) u_split (

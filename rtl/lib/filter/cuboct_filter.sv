@@ -25,6 +25,7 @@ module cuboct_filter #(
   // From the streamer.
   input  logic                                present_i,     // a candidate is asked for
   input  logic [RowBits-1:0]                  row_i,         // to meet this row of own slots
+  input  logic                                row_new_i,     // with present_i: not that of the candidate before
   input  logic                                own_i,         // the candidate is an own particle,
   input  logic [SlotBits-1:0]                 slot_i,        // of this slot
   input  logic [CountBits-1:0]                own_count_i,   // own particles
@@ -43,7 +44,7 @@ module cuboct_filter #(
   localparam int RowSlots = CountBits + $clog2(FilterLanes + 1);
 
   logic [3:0]               valid_d, valid_q;  // F0 ... F3
-  logic                     f0_own_q;
+  logic                     f0_own_q, f0_row_new_q;
   logic [RowBits-1:0]       f0_row_q, f1_row_q, f2_row_q, f3_row_q;
   logic [SlotBits-1:0]      f0_slot_q;
   logic [CandidateBits-1:0] f1_candidate_q, f2_candidate_q, f3_candidate_q;
@@ -87,6 +88,7 @@ module cuboct_filter #(
   always_ff @(posedge clk_i) begin
     if (!stall_o) begin
       f0_row_q       <= row_i;
+      f0_row_new_q   <= row_new_i;
       f0_own_q       <= own_i;
       f0_slot_q      <= slot_i;
     end
@@ -94,8 +96,8 @@ module cuboct_filter #(
       f1_row_q       <= f0_row_q;
       f1_test_q      <= test;
       f1_candidate_q <= candidate_i;
-      f1_row_data_q  <= row_data_i;
     end
+    if (load[1] && f0_row_new_q) f1_row_data_q <= row_data_i;
     if (load[2]) begin
       f2_row_q       <= f1_row_q;
       f2_test_q      <= f1_test_q;

@@ -41,12 +41,15 @@ module cuboct_pair_finder #(
   input  logic [Halos*CountBits-1:0]            counts_i,     // with again_i: of records
   // Where the candidate is read: own slot, and record of the faces' halos, and a row of own positions. The memories
   // answer in the next cycle, and keep the answer until the next read.
-  output logic                                  read_o,       // the memories are asked
+  output logic [Segments-1:0]                   read_o,       // by segment: its memory is asked
+  output logic [Segments-1:0]                   next_o,       // by segment, Arrival: what it answers is shown from the
+                                                              // next cycle on
   output logic [SlotBits-1:0]                   slot_o,       // own, with read_o
   output logic [AddrBits-1:0]                   addr_o,       // of halos, with read_o
   input  logic [CandidateBits-1:0]              own_i,        // an own particle as a candidate
   input  logic [Halos*CandidateBits-1:0]        halos_i,      // by segment behind the own ones
-  output logic [RowBits-1:0]                    row_o,        // row of own slots, with read_o
+  output logic                                  row_read_o,   // the row is asked for, unless it is the one before
+  output logic [RowBits-1:0]                    row_o,        // row of own slots, with row_read_o
   input  logic [FilterLanes*LaneBits-1:0]       row_data_i,   // by lane, x lowest, or the partners' ids
   // Pairs.
   output logic [CandidateBits-1:0]              candidate_o,  // with issue_o
@@ -62,7 +65,7 @@ module cuboct_pair_finder #(
   logic                     present, past, stall, filter_busy, issue_busy;
   // As the memories' answers come.
   logic [Segments-1:0]      read_pick;
-  logic                     read_present, read_busy;
+  logic                     row_new, read_present, read_busy, read_row_new, read_goes_on;
   logic [RowBits-1:0]       read_row;
   logic [SlotBits-1:0]      read_slot;
   logic [CandidateBits-1:0] read_own;
@@ -78,11 +81,12 @@ module cuboct_pair_finder #(
     .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
   ) u_streamer (
     .clk_i, .rst_ni, .run_i, .restart_i, .stall_i(stall), .own_i(own_count_i), .complete_next_i, .came_i,
-    .again_i, .counts_i, .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .past_o(past)
+    .again_i, .counts_i, .pick_o(pick), .addr_o, .slot_o, .row_o(row), .present_o(present), .row_new_o(row_new),
+    .past_o(past)
   );
 
   if (Arrival != 0) begin : gen_later
-    logic                     present_q;
+    logic                     present_q, row_new_q;
     logic [Segments-1:0]      pick_q;
     logic [RowBits-1:0]       row_q;
     logic [SlotBits-1:0]      slot_q;
@@ -93,14 +97,18 @@ module cuboct_pair_finder #(
       else if (!stall) present_q <= present;
     end
     always_ff @(posedge clk_i) begin
-      if (read_o) begin
-        pick_q     <= pick;
-        row_q      <= row;
-        slot_q     <= slot_o;
-        own_q      <= own_i;
-        row_data_q <= row_data_i;
+      if (present) begin
+        pick_q    <= pick;
+        row_q     <= row;
+        row_new_q <= row_new;
+        slot_q    <= slot_o;
       end
+      if (next_o[0]) own_q <= own_i;
+      if (read_goes_on && row_new_q) row_data_q <= row_data_i;
     end
+    assign next_o        = pick_q & {Segments{read_goes_on}};
+    assign read_row_new  = row_new_q;
+    assign read_goes_on  = present_q && !stall;
     assign read_present  = present_q;
     assign read_busy     = present_q;
     assign read_pick     = pick_q;
@@ -109,6 +117,9 @@ module cuboct_pair_finder #(
     assign read_own      = own_q;
     assign read_row_data = row_data_q;
   end else begin : gen_at_once
+    assign next_o        = '0;
+    assign read_row_new  = row_new;
+    assign read_goes_on  = present;
     assign read_present  = present;
     assign read_busy     = 1'b0;
     assign read_pick     = pick;
@@ -118,7 +129,7 @@ module cuboct_pair_finder #(
     assign read_row_data = row_data_i;
   end
   always_ff @(posedge clk_i) begin
-    if (read_o) answer_q <= read_pick;
+    if (read_goes_on) answer_q <= read_pick;
   end
   // By axis; records of x lie in small memories, of the others, but on arrival, in blocks that answer late.
   logic [3*CandidateBits-1:0] of_axis;
@@ -146,10 +157,10 @@ module cuboct_pair_finder #(
     .PlanarTwo(PlanarTwo), .PlanarThree(PlanarThree), .CandidateBits(CandidateBits), .FilterLanes(FilterLanes),
     .RowBits(RowBits), .SlotBits(SlotBits), .CountBits(CountBits), .Bonds(Bonds), .IdBits(IdBits), .IdLsb(IdLsb)
   ) u_filter (
-    .clk_i, .rst_ni, .present_i(read_present), .row_i(read_row), .own_i((Own != 0) && read_pick[0]),
-    .slot_i(read_slot), .own_count_i, .candidate_i(candidate), .row_data_i(read_row_data),
-    .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out), .row_o(row_out),
-    .mask_o(mask_out), .busy_o(filter_busy)
+    .clk_i, .rst_ni, .present_i(read_present), .row_i(read_row), .row_new_i(read_row_new),
+    .own_i((Own != 0) && read_pick[0]), .slot_i(read_slot), .own_count_i, .candidate_i(candidate),
+    .row_data_i(read_row_data), .full_i(full), .stall_o(stall), .push_o(push), .candidate_o(candidate_out),
+    .row_o(row_out), .mask_o(mask_out), .busy_o(filter_busy)
   );
 
   cuboct_split #(.FilterLanes(FilterLanes), .ForcePipes(ForcePipes), .SlotBits(SlotBits)) u_split (
@@ -174,12 +185,9 @@ module cuboct_pair_finder #(
 
   assign stall_o   = stall;
   assign present_o = present;
-  // Whatever they answer where no candidate is asked for, the filter does not take it; a stall, the phase and the
-  // particles are known earlier.
-  logic some_own_q;
-  always_ff @(posedge clk_i) some_own_q <= (own_count_i != '0);
-  assign read_o    = run_i && some_own_q && !stall;
-  assign row_o     = row;
+  assign read_o     = pick & {Segments{present}};
+  assign row_read_o = present && row_new;
+  assign row_o      = row;
   assign done_o = past && !read_busy && !filter_busy && empty && !issue_busy;
   logic unused_own;
   assign unused_own = ^read_own;

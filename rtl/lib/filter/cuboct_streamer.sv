@@ -30,6 +30,7 @@ module cuboct_streamer #(
   output logic [SlotBits-1:0]    slot_o,       // addr_o, for the own particles
   output logic [RowBits-1:0]     row_o,        // of own slots
   output logic                   present_o,    // (pick, addr, row) goes to the filter
+  output logic                   row_new_o,    // with present_o: the row is not that of the candidate before
   output logic                   past_o        // all segments are done
 );
   localparam logic [CountBits-1:0] One = 1;
@@ -153,6 +154,13 @@ module cuboct_streamer #(
   always_ff @(posedge clk_i) begin
     few_q <= ({{(RowSlots - CountBits) {1'b0}}, own_i} <= FilterLanes[RowSlots-1:0]);
   end
+  logic row_new_d, row_new_q;
+  assign row_new_d = !run_i || (present_o ? !few_q : row_new_q);
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) row_new_q <= 1'b1;
+    else row_new_q <= row_new_d;
+  end
+  assign row_new_o   = row_new_q;
   assign go          = run_i && !stall_i && (complete_q || (Arrival != 0 && there_q));
   assign skip        = !there_q;
   assign done        = go && !skip && last_row_q;  // with the record

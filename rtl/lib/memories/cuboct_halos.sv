@@ -35,9 +35,10 @@ module cuboct_halos #(
   output logic [Faces-1:0]           halo_came_o,    // one comes: it counts from the next cycle on
   output logic [Faces-1:0]           stream_end_next_o,  // as the streamer sees them: complete in the next cycle,
   output logic [Faces-1:0]           stream_came_o,  // and a record comes: it may be read from the next cycle on
-  input  logic [Streamers-1:0]       stream_read_i,  // the streamer asks
+  input  logic [Faces-1:0]           stream_read_i,  // by face: the streamer asks
+  input  logic [Faces-1:0]           stream_next_i,  // by face, Arrival: its answer is shown, a cycle later on
   input  logic [Streamers*AddrBits-1:0] stream_addr_i,  // read by it: what it gets is there in the next cycle (Arrival:
-  output logic [Faces*CandidateBits-1:0] stream_data_o,  // one later), by face, and stays until it reads again
+  output logic [Faces*CandidateBits-1:0] stream_data_o,  // behind stream_next_i), by face, and stays until the next
   // The box of the own particles; Arrival only.
   input  logic                       run_i,          // the step has begun
   input  logic                       box_empty_i,    // there is no own particle
@@ -158,7 +159,7 @@ module cuboct_halos #(
       .CountBits(CountBits)
     ) u_inbox (
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(append), .halo_i(kept),
-      .count_o(stream_count), .read_i(stream_read_i[Port]),
+      .count_o(stream_count), .read_i(stream_read_i[f]), .next_i(stream_next_i[f]),
       .addr_i(stream_addr_i[Port*AddrBits +: AddrBits]), .halo_o(streamed), .relay_append_i(halo_valid),
       .relay_record_i(moved), .relay_count_o(halo_count_o[f*CountBits +: CountBits]), .relay_read_i,
       .relay_clear_i(relay_clear), .relay_addr_i, .relay_ahead_i, .relay_halo_o(relayed),

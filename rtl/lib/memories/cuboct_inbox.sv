@@ -23,8 +23,9 @@ module cuboct_inbox #(
   output logic [CountBits-1:0]    count_o,       // records that came in this step
   input  logic                    read_i,        // the streamer asks; without it the answer stays
   input  logic [AddrBits-1:0]     addr_i,        // with read_i
-  output logic [HaloBits-1:0]     halo_o,        // from the next cycle on, Arrival: the one after the next in which
-                                                 // something is asked; a migration phase leaves it
+  input  logic                    next_i,        // Arrival: what the memory answers is shown from the next cycle on
+  output logic [HaloBits-1:0]     halo_o,        // from the next cycle on, Arrival: from the one after next_i on; a
+                                                 // migration phase leaves it
   input  logic                    relay_append_i,  // Arrival: a record for the relay came
   input  logic [HaloBits-1:0]     relay_record_i,  // with relay_append_i
   output logic [CountBits-1:0]    relay_count_o,   // records for the relay that came in this step
@@ -106,7 +107,7 @@ module cuboct_inbox #(
     logic [CountBits-1:0] relay_count_d, relay_count_q;
     assign relay_count_d = clear_i ? '0 : relay_append_i ? relay_count_q + 1'b1 : relay_count_q;
     always_ff @(posedge clk_i) begin
-      if (read_i) halo_q <= word;
+      if (next_i) halo_q <= word;
     end
     always_ff @(posedge clk_i) begin
       if (!rst_ni) relay_count_q <= '0;
@@ -118,24 +119,39 @@ module cuboct_inbox #(
     assign halo_o        = word;
     assign relay_count_o = count_q;
     logic unused_relay_record;
-    assign unused_relay_record = ^{relay_append_i, relay_record_i};
+    assign unused_relay_record = ^{relay_append_i, relay_record_i, next_i};
   end
   cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
     .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i), .clear_i(1'b0),
     .read_addr_i(read_d), .read_data_o(particle_o)
   );
+  // The relay's answer rests at 0 while another face is read, so that its clock can.
+  logic relay_wanted, relay_zero_q;
+  assign relay_wanted = relay_read_i && !(relay_clear_i && relay_zero_q);
+  always_ff @(posedge clk_i) begin
+    if (!rst_ni) relay_zero_q <= 1'b0;
+    else if (relay_read_i) relay_zero_q <= relay_clear_i;
+  end
   if (Relayed != 0 && Ahead != 0 && HaloDepth > 16) begin : gen_relay_ahead
     // A block memory answers late in its cycle: what the link registers choose from begins at a register. The memory
     // holds the record after that; where the relay reads another face that is the first one.
     logic [AddrBits-1:0] ahead;
     logic [HaloBits-1:0] after, relay_halo_q;
+    logic                comes, ask, first_q;  // the first record comes; the memory's answer is that one
     assign ahead = relay_ahead_i & {AddrBits{!relay_clear_i}};
+    assign comes = append_i && (count_q == '0);
+    assign ask   = relay_read_i && !(relay_clear_i && first_q);
+    always_ff @(posedge clk_i) begin
+      if (!rst_ni) first_q <= 1'b0;
+      else if (comes) first_q <= 1'b0;
+      else if (relay_read_i) first_q <= relay_clear_i;
+    end
     cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
-      .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(relay_read_i),
+      .clk_i, .write_i(append_i), .write_addr_i(count_q[AddrBits-1:0]), .write_data_i(halo_i), .read_i(ask),
       .clear_i(1'b0), .read_addr_i(ahead), .read_data_o(after)
     );
     always_ff @(posedge clk_i) begin
-      if (relay_read_i) begin
+      if (relay_wanted) begin
         if (relay_clear_i) relay_halo_q <= '0;
         else relay_halo_q <= after;
       end
@@ -148,12 +164,12 @@ module cuboct_inbox #(
     assign unused_ahead = ^relay_ahead_i;
     cuboct_ram #(.Bits(HaloBits), .Depth(HaloDepth), .AddrBits(AddrBits)) u_halos (
       .clk_i, .write_i((Arrival != 0) ? relay_append_i : append_i), .write_addr_i(relay_count_o[AddrBits-1:0]),
-      .write_data_i((Arrival != 0) ? relay_record_i : halo_i), .read_i(relay_read_i), .clear_i(relay_clear_i),
+      .write_data_i((Arrival != 0) ? relay_record_i : halo_i), .read_i(relay_wanted), .clear_i(relay_clear_i),
       .read_addr_i(relay_addr_i), .read_data_o(relay_halo_o)
     );
   end else begin : gen_no_relay
     logic unused_relay;
-    assign unused_relay = ^{relay_read_i, relay_clear_i, relay_addr_i, relay_ahead_i, relay_record_i};
+    assign unused_relay = ^{relay_wanted, relay_clear_i, relay_addr_i, relay_ahead_i, relay_record_i};
     assign relay_halo_o = '0;
   end
 

@@ -31,10 +31,11 @@ module cuboct_slots #(
   input  logic                           main_read_i,    // without it main_data_o stays
   input  logic [SlotBits-1:0]            main_slot_i,    // with main_read_i
   output logic [Bits-1:0]                main_data_o,    // of the question before
-  input  logic [Streamers-1:0]           stream_read_i,  // without it stream_data_o and row_data_o stay
-  input  logic [SlotBits-1:0]            stream_slot_i,  // with stream_read_i[0]
+  input  logic                           stream_read_i,  // without it stream_data_o stays
+  input  logic [SlotBits-1:0]            stream_slot_i,  // with stream_read_i
   output logic [SeenBits-1:0]            stream_data_o,  // leading fields of that slot
-  input  logic [Streamers*RowBits-1:0]   row_i,          // with stream_read_i
+  input  logic [Streamers-1:0]           row_read_i,     // by streamer: without it row_data_o stays
+  input  logic [Streamers*RowBits-1:0]   row_i,          // with row_read_i
   output logic [Streamers*FilterLanes*CoarseBits-1:0] row_data_o,  // by lane, x lowest
   input  logic [ForcePipes*SlotBits-1:0] pipe_slot_i,    // per pipe, in every cycle
   output logic [ForcePipes*SeenBits-1:0] pipe_data_o,    // per pipe, leading fields
@@ -56,7 +57,7 @@ module cuboct_slots #(
   end else begin : gen_ports
     cuboct_ram #(.Bits(SeenBits), .Depth(Capacity), .AddrBits(SlotBits)) u_stream (
       .clk_i, .write_i, .write_addr_i(write_slot_i), .write_data_i(write_data_i[SeenBits-1:0]),
-      .read_i(stream_read_i[0]),
+      .read_i(stream_read_i),
       .clear_i(1'b0), .read_addr_i(stream_slot_i), .read_data_o(stream_data_o)
     );
     for (genvar f = 0; f < ForcePipes; f++) begin : gen_pipe
@@ -103,7 +104,7 @@ module cuboct_slots #(
         if (Rows > 1) begin : gen_read
           assign row = bank_q[row_i[s*RowBits +: $clog2(Rows)]];
           always_ff @(posedge clk_i) begin
-            if (stream_read_i[s]) row_q <= row;
+            if (row_read_i[s]) row_q <= row;
           end
         end else begin : gen_only
           assign row   = bank_q[0];
@@ -115,5 +116,5 @@ module cuboct_slots #(
   end
 
   logic unused_row;
-  assign unused_row = ^row_i;
+  assign unused_row = ^{row_i, row_read_i};
 endmodule

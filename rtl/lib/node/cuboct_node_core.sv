@@ -165,7 +165,8 @@ module cuboct_node_core #(
   logic [SlotBits-1:0]            own_write_slot, update_slot, migrate_write_slot, main_slot, stream_slot;
   logic [OwnBits-1:0]             own_write_data, update_data, migrate_write_data, main_data;
   logic [SeenBits-1:0]            stream_data;
-  logic [Streamers-1:0]           stream_read;
+  logic                           stream_read;          // the streamer asks for an own particle,
+  logic [Streamers-1:0]           row_read;             // and for a row
   logic                           main_read, main_hold, migrate_read;
   logic [ForcePipes*SlotBits-1:0] issue_slot, kick_slot_next;
   logic [ForcePipes*SeenBits-1:0] pipe_data;
@@ -221,8 +222,10 @@ module cuboct_node_core #(
       else write_q <= own_write;
     end
     always_ff @(posedge clk_i) begin
-      slot_q <= own_write_slot;
-      data_q <= own_write_data;
+      if (own_write) begin
+        slot_q <= own_write_slot;
+        data_q <= own_write_data;
+      end
     end
     assign slots_write      = idle_o ? load : write_q;
     assign slots_write_slot = idle_o ? own_count_q[SlotBits-1:0] : slot_q;
@@ -240,14 +243,14 @@ module cuboct_node_core #(
     .clk_i, .write_i(slots_write), .write_slot_i(slots_write_slot), .write_data_i(slots_write_data),
     .main_read_i(main_read), .main_slot_i(main_slot), .main_data_o(main_data), .stream_read_i(stream_read),
     .stream_slot_i(stream_slot),
-    .stream_data_o(stream_data), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
+    .stream_data_o(stream_data), .row_read_i(row_read), .row_i(row), .row_data_o(row_data), .pipe_slot_i(issue_slot),
     .pipe_data_o(pipe_data), .fault_slot_i(kick_slot_next), .fault_id_o(kick_id)
   );
 
   // Links: receivers.
   logic [Faces-1:0]           halo_end, halo_end_next, migrate_end, migrate_empty, migrate_face, migrate_clear;
   logic [Faces*CountBits-1:0] halo_count;
-  logic [Faces-1:0]           stream_end;
+  logic [Faces-1:0]           stream_end, halo_read, halo_next;  // the streamer asks, and takes the answer
   logic [Faces-1:0]           some_next, over_next;  // migrating particles, next cycle: one waits; none does, all came
   logic [Faces-1:0]           stream_came, halo_came;  // a record comes
   logic [Streamers*AddrBits-1:0] stream_addr;
@@ -318,8 +321,8 @@ module cuboct_node_core #(
       .halo_clear_i(force_over), .halo_end_o(halo_end), .halo_end_next_o(halo_end_next), .halo_count_o(halo_count),
       .stream_end_next_o(stream_end),
       .halo_came_o(halo_came), .stream_came_o(stream_came), .run_i(engine_runs),
-      .box_empty_i(box_empty), .box_low_i(box_low), .box_high_i(box_high), .stream_read_i(stream_read),
-      .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
+      .box_empty_i(box_empty), .box_low_i(box_low), .box_high_i(box_high), .stream_read_i(halo_read),
+      .stream_next_i(halo_next), .stream_addr_i(stream_addr), .stream_data_o(stream_halos),
       .relay_read_i(relay_read), .relay_clear_i(relay_clear[Faces-2:1]), .relay_addr_i(relay_addr),
       .relay_ahead_i(relay_ahead),
       .relay_data_o(relay_halos), .migrating_i(in_migrate || (Arrival != 0 && in_update)),
@@ -558,12 +561,16 @@ module cuboct_node_core #(
       .done_o(finder_done)
     );
     assign stream_read = 1'b0;
+    assign row_read    = 1'b0;
+    assign halo_read   = '0;
+    assign halo_next   = '0;
     assign stream_slot = '0;
     assign stream_addr = '0;
     assign row         = '0;
     assign force_event_o[3:1] = {issue[0], present, force_stall};
     logic unused_streams;
-    assign unused_streams = ^{past_exchange, past_next, row_data, stream_halos, stream_end, stream_came};
+    assign unused_streams = ^{past_exchange, past_next, row_data, stream_halos, stream_end, stream_came, halo_read,
+                              halo_next};
   end else begin : gen_stream
     localparam int Pipes = ForcePipes / Streamers;
     logic [Streamers-1:0] done;
@@ -575,15 +582,19 @@ module cuboct_node_core #(
       logic [Halos-1:0]                 came;
       logic [Halos*CandidateBits-1:0]   halos;
       logic [SlotBits-1:0]              own_slot;
+      logic [Halos+Own-1:0]             reads, nexts;
       if (Own != 0) begin : gen_own
         assign complete[0]            = 1'b1;
         assign stream_slot            = own_slot;
+        assign stream_read            = reads[0];
       end else begin : gen_no_own
         logic unused_own_slot;
         assign unused_own_slot = ^own_slot;
       end
       for (genvar k = 0; k < Halos; k++) begin : gen_halo
         localparam int Face = k * Streamers + s;
+        assign halo_read[Face]                          = reads[k+Own];
+        assign halo_next[Face]                          = nexts[k+Own];
         assign complete[k+Own]                          = (Arrival != 0) ? stream_end[Face] : past_next[Face/2];
         assign came[k]                                  = stream_came[Face];
         assign halos[k*CandidateBits +: CandidateBits]  = stream_halos[Face*CandidateBits +: CandidateBits];
@@ -595,8 +606,8 @@ module cuboct_node_core #(
         .RowBits(RowBits), .SlotBits(SlotBits), .AddrBits(AddrBits), .CountBits(CountBits)
       ) u_finder (
         .clk_i, .rst_ni, .run_i(engine_runs), .restart_i(force_over), .own_count_i(own_count_q),
-        .complete_next_i(complete), .came_i(came), .again_i(1'b0), .counts_i('0), .read_o(stream_read[s]),
-        .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
+        .complete_next_i(complete), .came_i(came), .again_i(1'b0), .counts_i('0), .read_o(reads), .next_o(nexts),
+        .row_read_o(row_read[s]), .slot_o(own_slot), .addr_o(stream_addr[s*AddrBits +: AddrBits]),
         .own_i(own_candidate), .halos_i(halos), .row_o(row[s*RowBits +: RowBits]),
         .row_data_i(row_data[s*FilterLanes*Axes*FilterFrac +: FilterLanes*Axes*FilterFrac]),
         .candidate_o(issue_candidate[s*CandidateBits +: CandidateBits]), .issue_o(issue[s*Pipes +: Pipes]),
