@@ -186,9 +186,9 @@ NodeBits node_bits(const Plan& plan) {
 void add_clock(Sheet& sheet, const Plan& plan, const MachineEvents& e, double cycles, const Band& registers,
                const Technology& technology) {
   // Of synthesised nodes with their own traffic (docs/measured/energy.md): loads of registers over those that
-  // the work lists have, 1.37 to 1.87, as values also wait in registers; gates, registers without one and
-  // control, 0.15 to 0.23 of all registers in each cycle, also of a node without particles.
-  constexpr Band kLoads{1.3, 1.9}, kAlways{0.12, 0.25};
+  // the work lists have, 1.28 to 1.9, as values also wait in registers; gates, registers without one and
+  // control, 0.062 to 0.10 of all registers in each cycle, also of a node without particles.
+  constexpr Band kLoads{1.2, 1.9}, kAlways{0.05, 0.11};
   const auto each = static_cast<double>(plan.nodes()) * cycles;
   if (plan.program != nullptr || technology.at(Constant::clock_device)) {
     sheet.add("clock of registers", each, "cycles", Constant::clock_bit, registers);
