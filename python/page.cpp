@@ -2,7 +2,6 @@
 #include "python/page.h"
 
 #include <filesystem>
-#include <utility>
 #include <variant>
 
 #include "cli/run/outputs.h"

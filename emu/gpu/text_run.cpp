@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "emu/gpu/rounds/host_code.h"
 #include "emu/gpu/rounds/nvrtc.h"

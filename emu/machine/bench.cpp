@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ostream>
 
 #include "model/base/interrupt.h"
 #include "model/base/parallel.h"

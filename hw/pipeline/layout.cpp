@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "hw/pipeline/layout.h"
 
-#include <algorithm>
-
 namespace cuboct::pipeline {
 namespace {
 

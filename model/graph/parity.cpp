@@ -5,7 +5,6 @@
 // and other swapped, an even value has the same form and an odd one its negative.
 #include "model/graph/parity.h"
 
-#include <algorithm>
 #include <map>
 
 #include "model/graph/interval.h"

@@ -2,7 +2,6 @@
 // [rule] kind = "lps": the linear peridynamic solid.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "model/rules/lps.h"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <utility>
 
 #include "model/base/error.h"
 #include "model/base/guarded_reader.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/base/error.h"
 #include "model/base/interrupt.h"
 #include "model/real/balance.h"
 #include "study/stability/stability.h"

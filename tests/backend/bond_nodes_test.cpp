@@ -2,9 +2,6 @@
 // Bonded rules on native nodes beside golden, and their cycles beside the timing model's.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <random>
-
 #include "emu/machine/loop_bench.h"
 #include "emu/systemc/node.h"
 #include "model/program/integer_program.h"

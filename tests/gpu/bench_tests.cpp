@@ -7,7 +7,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <set>
 
 #include "emu/gpu/bench/bench_report.h"

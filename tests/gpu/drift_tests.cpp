@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <vector>
 
 #include "emu/gpu/engine.h"

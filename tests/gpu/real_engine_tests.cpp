@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "emu/gpu/engine.h"
 #include "model/analysis/measure.h"

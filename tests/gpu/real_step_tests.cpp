@@ -2,8 +2,6 @@
 // Whole steps of small bodies, every pair by brute force, against the reference engine in doubles; energies.
 #include <gtest/gtest.h>
 
-#include <numeric>
-
 #include "emu/gpu/real/energy_table.h"
 #include "emu/gpu/real/real_tables.h"
 #include "model/analysis/measure.h"

@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "model/base/error.h"
 #include "model/config/config.h"
 #include "model/scene/readings.h"
 #include "model/scene/scene.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <set>
 #include <vector>
 
 #include "hw/plan/setup.h"

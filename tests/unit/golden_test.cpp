@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "model/base/fixed_math.h"
 #include "model/real/reference.h"

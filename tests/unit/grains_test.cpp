@@ -9,7 +9,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "model/analysis/scene_cell.h"
 #include "model/analysis/strained_cell.h"

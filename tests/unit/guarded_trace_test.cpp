@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <fstream>
-#include <functional>
 #include <string>
 
 #include "hw/plan/setup.h"

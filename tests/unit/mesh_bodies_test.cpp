@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Meshes of several bodies, against the same solids as closed forms.
 #ifdef CUBOCT_MESH_DIRECTORY
-#include <cmath>
 
 #include "model/body/packing.h"
 #include "tests/unit/mesh_files.h"

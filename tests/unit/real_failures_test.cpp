@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <numeric>
 
 #include "hw/plan/setup.h"
 #include "model/contract/golden.h"

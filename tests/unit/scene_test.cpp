@@ -5,11 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <regex>
-#include <set>
-#include <sstream>
 
 #include "hw/arch/arch.h"
 #include "model/analysis/measure.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The fixed rule: golden's bits. A step that may not be possible is golden's own, on the host, so that errors
 // are too.
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <string>
 
 #include "emu/gpu/lps/lps_kernel.h"
 #include "emu/gpu/messages.h"

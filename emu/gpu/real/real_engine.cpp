@@ -2,7 +2,6 @@
 // The rule in floats or doubles.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "emu/gpu/device/memory_words.h"
 #include "emu/gpu/machine.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <unordered_map>
 
 #include "emu/gpu/rounds/rounds_limits.h"
 #include "emu/gpu/rounds/scaled_graph.h"

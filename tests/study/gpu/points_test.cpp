@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "model/base/error.h"
 #include "study/sweep/gpu_program.h"
 #include "study/sweep/measure_errors.h"
 #include "study/sweep/measure_speed.h"
