@@ -13,40 +13,35 @@
 
 namespace cuboct::test {
 
-inline constexpr const char* kGlass = R"toml(density = "2440 kg/m^3"
+// What stands behind a rule's text: a block, and its run.
+inline std::string block_and_run(const std::string& dt) {
+  return R"toml([packing]
+pitch = "1 mm"
+[geometry]
+shape = "box"
+min = "[0, 0, 0] mm"
+max = "[3.5, 3, 2] mm"
+[run]
+dt = ")toml" +
+         dt + "\"\nsteps = 1\n";
+}
+
+inline const std::string kGlass = R"toml(density = "2440 kg/m^3"
 [rule]
 file = "texts/glass.toml"
 parameters = { youngs_modulus = "72 GPa", poissons_ratio = 0.22 }
 let.critical_stretch = 0.00091
 start.whole = "not ((x_i.y - 1.2 mm) * (x_i.y + d0.y - 1.2 mm) < 0 and x_i.x + d0.x / 2 < 1 mm)"
-[packing]
-pitch = "1 mm"
-[geometry]
-shape = "box"
-min = "[0, 0, 0] mm"
-max = "[3.5, 3, 2] mm"
-[run]
-dt = "0.04 us"
-steps = 1
-)toml";
+)toml" + block_and_run("0.04 us");
 
-inline constexpr const char* kPlastic = R"toml(density = "1.41 g/cm^3"
+inline const std::string kPlastic = R"toml(density = "1.41 g/cm^3"
 [rule]
 file = "texts/plastic.toml"
-[packing]
-pitch = "1 mm"
-[geometry]
-shape = "box"
-min = "[0, 0, 0] mm"
-max = "[3.5, 3, 2] mm"
-[run]
-dt = "0.2 us"
-steps = 1
-)toml";
+)toml" + block_and_run("0.2 us");
 
 // Of three rounds, of little arithmetic: springs that break, the weaker the more of their neighbours' bonds
 // have broken.
-inline constexpr const char* kSprings = R"toml(density = "1.41 g/cm^3"
+inline const std::string kSprings = R"toml(density = "1.41 g/cm^3"
 [rule]
 bonds = "reference"
 reach = "1.2 * pitch"
@@ -68,16 +63,7 @@ sum.all = { is = "left_j", when = "whole" }
 finish.near = "min(all, 144)"
 [[rule.round]]
 sum.force = { is = "(0.5 kN/m + 0.001 kN/m * (near_i + near_j)) * d * (1 - pitch^2 / dot(d, d))", when = "whole" }
-[packing]
-pitch = "1 mm"
-[geometry]
-shape = "box"
-min = "[0, 0, 0] mm"
-max = "[3.5, 3, 2] mm"
-[run]
-dt = "0.2 us"
-steps = 1
-)toml";
+)toml" + block_and_run("0.2 us");
 
 struct Motion {
   Vec3 together = Vec3::Zero();  // m/s

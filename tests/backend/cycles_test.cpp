@@ -28,6 +28,12 @@ double machine_over_ideal(const Setup& setup, uint32_t steps, double tolerance =
   return actual / static_cast<double>(expected.ideal);
 }
 
+Setup moving_block(bool rich, const Arch& arch) {
+  return block(
+      {.size = {4, 4, 4}, .jitter = 0.01, .speed = 0.001, .damping = rich ? 0.1 : 0, .force_held = rich},
+      arch);
+}
+
 // Neighbours begin each phase together in the estimate; the machine's nodes drift apart by what they save by
 // not waiting, up to a tenth of a step.
 TEST(ExpectedCycles, AreWithinTwelvePerCentOfTheMachine) {
@@ -37,13 +43,7 @@ TEST(ExpectedCycles, AreWithinTwelvePerCentOfTheMachine) {
   narrow.link_bits = 24;
   for (const Arch& arch : {Arch{}, slow, narrow})
     for (const bool rich : {false, true}) {
-      const double over = machine_over_ideal(block({.size = {4, 4, 4},
-                                                    .jitter = 0.01,
-                                                    .speed = 0.001,
-                                                    .damping = rich ? 0.1 : 0,
-                                                    .force_held = rich},
-                                                   arch),
-                                             20);
+      const double over = machine_over_ideal(moving_block(rich, arch), 20);
       if (arch.link_bits != narrow.link_bits) {  // those that wait for no links
         EXPECT_LE(over, 1.5);
       }
@@ -59,13 +59,7 @@ TEST(ExpectedCycles, OnArrivalAreWithinFifteenPerCentOfTheMachine) {
       arch.halos = Halos::arrival;
       arch.streamers = streamers;
       arch.force_pipes = 2;
-      machine_over_ideal(block({.size = {4, 4, 4},
-                                .jitter = 0.01,
-                                .speed = 0.001,
-                                .damping = rich ? 0.1 : 0,
-                                .force_held = rich},
-                               arch),
-                         20, 0.15);
+      machine_over_ideal(moving_block(rich, arch), 20, 0.15);
     }
 }
 

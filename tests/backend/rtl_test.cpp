@@ -304,8 +304,3 @@ INSTANTIATE_TEST_SUITE_P(Cases, RtlLattice,
 
 }  // namespace
 }  // namespace cuboct::test
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -45,73 +45,61 @@ TEST_P(SystemC, EqualsGoldenAndThePlainLoop) {
 INSTANTIATE_TEST_SUITE_P(Cases, SystemC, testing::ValuesIn(case_names()),
                          [](const auto& p) { return p.param; });
 
-// Bricks in one simulation: a node linked to itself, two nodes linked twice, ragged ones, checked links; each
-// without and with stalls.
-TEST(SystemCBricks, EqualGoldenAndThePlainLoop) {
-  const std::vector<std::pair<std::string, Cell>> bricks{{"periodic_27", {3, 2, 1}},
-                                                         {"flat_ring", {2, 2, 1}},
-                                                         {"hot_gas", {3, 4, 2}},
-                                                         {"rich_damped.retry", {2, 2, 2}},
-                                                         {"undamped_2x2x2", {2, 2, 2}}};
-  std::vector<std::unique_ptr<Case>> cases;
+// Nodes of several cases in one simulation, each without and with stalls. `name`: of their benches.
+void expect_golden_and_the_plain_loop(const std::string& name, const std::vector<Case>& cases) {
+  constexpr double kRates[] = {0.0, 0.3};
   std::vector<std::unique_ptr<emu::Bench>> benches;
   std::vector<emu::Bench*> all;
-  for (const auto& [name, brick] : bricks)
-    for (const double rate : {0.0, 0.3}) {
-      const Case& c = *cases.emplace_back(std::make_unique<Case>(with_brick(make_case(name), brick)));
+  for (const Case& c : cases)
+    for (const double rate : kRates) {
       benches.push_back(std::make_unique<emu::Bench>(
-          ("bench" + std::to_string(benches.size())).c_str(), c.setup.plan, c.setup.initial,
+          (name + std::to_string(benches.size())).c_str(), c.setup.plan, c.setup.initial,
           keep_all(c.steps, rate, 7), emu::native_nodes(c.setup.plan), "systemc"));
       all.push_back(benches.back().get());
     }
   emu::simulate(all);
-  for (size_t k = 0; k < cases.size(); ++k) {
-    const Case& c = *cases[k];
+  for (size_t k = 0; k < benches.size(); ++k) {
+    const Case& c = cases[k / 2];
     const Plan& plan = c.setup.plan;
     const emu::RunResult run = benches[k]->take_result();
     const Compared compared = compare(plan, run_golden(c.setup, c.steps), run);
     EXPECT_EQ(compared.difference, "") << c.name;
     EXPECT_EQ(compared.steps, c.steps + 1);
-    const Compared with_plain = compare_cycles(
-        run, run_loop_bench(plan, c.setup.initial, keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7),
-                            emu::native_nodes(plan), "plain"));
-    EXPECT_EQ(with_plain.difference, "") << c.name;
-    EXPECT_EQ(with_plain.spans, c.steps * plan.nodes() * kPhases);
-  }
-}
-
-// Links between devices: nodes of each kind, in one simulation, without and with stalls.
-TEST(SystemCBoards, EqualGoldenAndThePlainLoop) {
-  const std::vector<std::pair<std::string, DeviceCut>> boards{
-      {"undamped_2x2x2", {{1, 2, 1}, 1, 1}}, {"undamped_2x2x2", {{1, 2, 1}, 13, 3}},
-      {"arrival_ring", {{1, 1, 1}, 9, 5}},   {"arrival_two", {{2, 2, 2}, 17, 3}},
-      {"brick_serial", {{1, 1, 1}, 12, 2}},  {"flat_ring", {{2, 1, 1}, 9, 4}}};
-  std::vector<std::unique_ptr<Case>> cases;
-  std::vector<std::unique_ptr<emu::Bench>> benches;
-  std::vector<emu::Bench*> all;
-  for (const auto& [name, cut] : boards)
-    for (const double rate : {0.0, 0.3}) {
-      const Case& c = *cases.emplace_back(std::make_unique<Case>(with_boards(make_case(name), cut)));
-      EXPECT_FALSE(c.setup.plan.cut.empty()) << name;
-      benches.push_back(std::make_unique<emu::Bench>(
-          ("boards" + std::to_string(benches.size())).c_str(), c.setup.plan, c.setup.initial,
-          keep_all(c.steps, rate, 7), emu::native_nodes(c.setup.plan), "systemc"));
-      all.push_back(benches.back().get());
-    }
-  emu::simulate(all);
-  for (size_t k = 0; k < cases.size(); ++k) {
-    const Case& c = *cases[k];
-    const Plan& plan = c.setup.plan;
-    const emu::RunResult run = benches[k]->take_result();
-    const Compared compared = compare(plan, run_golden(c.setup, c.steps), run);
-    EXPECT_EQ(compared.difference, "") << c.name;
-    EXPECT_EQ(compared.steps, c.steps + 1);
-    const auto options = keep_all(c.steps, k % 2 == 0 ? 0.0 : 0.3, 7);
+    const auto options = keep_all(c.steps, kRates[k % 2], 7);
     const Compared with_plain =
         compare_cycles(run, run_loop_bench(plan, c.setup.initial, options, emu::native_nodes(plan), "plain"));
     EXPECT_EQ(with_plain.difference, "") << c.name;
     EXPECT_EQ(with_plain.spans, c.steps * plan.nodes() * kPhases);
   }
+}
+
+// A node linked to itself, two nodes linked twice, ragged ones, checked links.
+TEST(SystemCBricks, EqualGoldenAndThePlainLoop) {
+  std::vector<Case> cases;
+  for (const auto& [name, brick] :
+       std::initializer_list<std::pair<const char*, Cell>>{{"periodic_27", {3, 2, 1}},
+                                                           {"flat_ring", {2, 2, 1}},
+                                                           {"hot_gas", {3, 4, 2}},
+                                                           {"rich_damped.retry", {2, 2, 2}},
+                                                           {"undamped_2x2x2", {2, 2, 2}}})
+    cases.push_back(with_brick(make_case(name), brick));
+  expect_golden_and_the_plain_loop("bench", cases);
+}
+
+// Links between devices: nodes of each kind.
+TEST(SystemCBoards, EqualGoldenAndThePlainLoop) {
+  std::vector<Case> cases;
+  for (const auto& [name, cut] :
+       std::initializer_list<std::pair<const char*, DeviceCut>>{{"undamped_2x2x2", {{1, 2, 1}, 1, 1}},
+                                                                {"undamped_2x2x2", {{1, 2, 1}, 13, 3}},
+                                                                {"arrival_ring", {{1, 1, 1}, 9, 5}},
+                                                                {"arrival_two", {{2, 2, 2}, 17, 3}},
+                                                                {"brick_serial", {{1, 1, 1}, 12, 2}},
+                                                                {"flat_ring", {{2, 1, 1}, 9, 4}}}) {
+    cases.push_back(with_boards(make_case(name), cut));
+    EXPECT_FALSE(cases.back().setup.plan.cut.empty()) << name;
+  }
+  expect_golden_and_the_plain_loop("boards", cases);
 }
 
 // A native node that is called in every cycle.
@@ -268,8 +256,3 @@ TEST(SystemCStuck, NamesTheNodes) {
 
 }  // namespace
 }  // namespace cuboct::test
-
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}

@@ -10,41 +10,11 @@
 #include "model/trace/figure.h"
 #include "model/trace/trace.h"
 #include "tests/cli/shell.h"
+#include "tests/study/breathing_block.h"
 
 namespace cuboct::test {
 namespace {
 
-// A free block of two cells a side that breathes.
-constexpr const char* kScene = R"(density = "1.41 g/cm^3"  # acetal
-
-[packing]
-pitch = "0.5 mm"
-
-[box]
-cells = [2, 2, 2]
-
-[law]
-kind = "elastic"
-youngs_modulus = "3 GPa"
-direction = [1, 0, 0]
-
-[[velocity]]
-region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [-1, 0, 0] }
-uniform = "[20, 0, 0] m/s"
-
-[[velocity]]
-region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [1, 0, 0] }
-uniform = "[-20, 0, 0] m/s"
-
-[[probe]]
-name = "right"
-kind = "displacement"
-region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [-1, 0, 0] }
-
-[run]
-dt_safety = 0.2
-duration = "24 us"  # ten breaths
-)";
 constexpr const char* kStudy = R"(scene = "scene.toml"
 samples = 60
 
@@ -61,7 +31,7 @@ index_bits = [6, 9]
 
 struct Studied {
   explicit Studied(const std::string& study = kStudy) : bench(false) {
-    write_text(bench.path("scene.toml"), std::string(kScene));
+    write_text(bench.path("scene.toml"), std::string(kBreathing));
     write_text(bench.path("study.toml"), study);
   }
   Answer explore(const std::vector<std::string>& more) const {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A scene and a result directory of a stranger, through each command: what they say is shown, and nothing of
 // it is done.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -20,26 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 256 particles; a name that is allowed and breaks columns and markup where it is no data.
+// A name that is allowed and breaks columns and markup where it is no data.
 constexpr const char* kName =
     "so\xc2\xa0"
     "ft $(touch cuboct_was_here) <b>{a}_2^3";
 std::string scene_text() {
-  return "title = " + hostile_toml() +
-         R"(
-units = "reduced"
-mass = 1.0
-[packing]
-pitch = "relaxed"
-[box]
-cells = [4, 4, 4]
-periodic = "xyz"
-[law]
-kind = "lj"
-epsilon = 1.0
-sigma = 1.0
-cutoff = 1.8
-[[material]]
+  return hostile_block() + R"([[material]]
 name = ")" +
          std::string(kName) + R"("
 [[probe]]

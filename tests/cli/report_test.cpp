@@ -26,12 +26,6 @@ std::string page(const Bench& bench, std::vector<std::string> arguments, int cod
   return contents(bench.path("run/report.html"));
 }
 
-size_t count(const std::string& text, const std::string& part) {
-  size_t found = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
-
 TEST(Report, SetsFiguresBesideThoseOfTheDatasheet) {
   const Bench bench(false);
   const std::string out = bench.path("run");

@@ -28,6 +28,12 @@ std::string contents(const std::string& path) {
   return text.str();
 }
 
+size_t count(const std::string& text, const std::string& part) {
+  size_t found = 0;
+  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
 std::string without_excerpt(const std::string& text) {
   return std::regex_replace(text, std::regex("\n *[0-9]+ \\| [^\n]*\n +\\| +\\^(?=\n)"), "");
 }

@@ -58,5 +58,7 @@ class Bench {
 std::string without_excerpt(const std::string& text);
 
 std::string contents(const std::string& path);
+// How often the part stands in the text.
+size_t count(const std::string& text, const std::string& part);
 
 }  // namespace cuboct::test

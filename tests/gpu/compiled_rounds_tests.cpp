@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Programs as text that is compiled while the engine runs: by the host's compiler for an engine with loops
 // for kernels, and by CUDA's where its library is here, for a device that need not be.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -17,20 +15,12 @@
 #include "model/contract/pair_program.h"
 #include "model/program/integer_program.h"
 #include "tests/gpu/host_compiler.h"
+#include "tests/gpu/rule_scenes.h"
 #include "tests/support/cases.h"
 #include "tests/support/refused_with.h"
 
 namespace cuboct::test {
 namespace {
-
-const std::string kRules = CUBOCT_SOURCE_DIR "/scenes/rules/";
-
-// Of several stages the first.
-Scene rule_scene(const std::string& name) {
-  const std::string file = kRules + name + ".toml";
-  const std::vector<StageName> stages = stages_of(file);
-  return read_scene(file, {.stage = stages.empty() ? "" : stages.front().name});
-}
 
 void run_beside_golden(const Scene& scene, const std::string& name, uint64_t steps) {
   SCOPED_TRACE(name);

@@ -41,4 +41,12 @@ inline std::string note(const Notes& notes, const std::string& name) {
   return {};
 }
 
+// The host takes any number of devices.
+inline gpu::Options of_slabs(int slabs) {
+  gpu::Options options;
+  options.devices.clear();
+  for (int s = 0; s < slabs; ++s) options.devices.push_back(s);
+  return options;
+}
+
 }  // namespace cuboct::test

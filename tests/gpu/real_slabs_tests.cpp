@@ -19,13 +19,6 @@
 namespace cuboct::test {
 namespace {
 
-gpu::Options of_slabs(int slabs) {
-  gpu::Options options;
-  options.devices.clear();
-  for (int s = 0; s < slabs; ++s) options.devices.push_back(s);
-  return options;
-}
-
 // Each text once.
 gpu::CompileRounds compile_once(const std::string& name) {
   auto path = std::make_shared<std::string>();

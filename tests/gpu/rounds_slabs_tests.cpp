@@ -20,13 +20,6 @@ namespace {
 
 const std::string kSlabRules = CUBOCT_SOURCE_DIR "/scenes/rules/";
 
-gpu::Options of_slabs(int slabs) {
-  gpu::Options options;
-  options.devices.clear();
-  for (int s = 0; s < slabs; ++s) options.devices.push_back(s);
-  return options;
-}
-
 int planes_of(const Case& c) { return static_cast<int>(Owners(c.setup.plan, c.setup.initial, 1).planes()); }
 
 // Particles rest but in the lowest slab: others learn of it alone that its particles have moved.

@@ -102,9 +102,4 @@ INSTANTIATE_TEST_SUITE_P(Cases, LinkRtl, testing::Values("undamped_2x2x2.detect"
 }  // namespace
 }  // namespace cuboct::test
 
-int sc_main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
-}
-
 int main(int argc, char** argv) { return sc_core::sc_elab_and_sim(argc, argv); }

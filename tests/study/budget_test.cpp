@@ -8,13 +8,13 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <tuple>
 
 #include "cli/study/budget.h"
 #include "hw/plan/setup.h"
 #include "model/base/error.h"
 #include "model/base/output.h"
 #include "study/sweep/cost.h"
+#include "tests/study/breathing_block.h"
 #include "tests/support/folder.h"
 #include "tests/support/refused_with.h"
 
@@ -23,38 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A free block of two cells a side that breathes.
-constexpr const char* kScene = R"(# A small block.
-density = "1.41 g/cm^3"  # acetal
-
-[packing]
-pitch = "0.5 mm"
-
-[box]
-cells = [2, 2, 2]
-
-[law]
-kind = "elastic"
-youngs_modulus = "3 GPa"
-direction = [1, 0, 0]
-
-[[velocity]]
-region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [-1, 0, 0] }
-uniform = "[20, 0, 0] m/s"
-
-[[velocity]]
-region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [1, 0, 0] }
-uniform = "[-20, 0, 0] m/s"
-
-[[probe]]
-name = "right"
-kind = "displacement"
-region = { shape = "half_space", point = "[0.6, 0, 0] mm", normal = [-1, 0, 0] }
-
-[run]
-dt_safety = 0.2  # a fifth of the limit
-duration = "24 us"  # ten breaths
-)";
 constexpr const char* kArch = R"(name = "mine"  # my machine
 
 [widths]
@@ -87,7 +55,7 @@ index_bits = [3, 6, 9]
 class Budget : public testing::Test {
  protected:
   void SetUp() override {
-    std::ofstream(dir_ / "scene.toml") << kScene;
+    std::ofstream(dir_ / "scene.toml") << test::kBreathing;
     std::ofstream(dir_ / "arch.toml") << kArch;
   }
 

@@ -39,6 +39,24 @@ inline std::string hostile_toml() {
       kLoot);
 }
 
+// 256 particles under such a title.
+inline std::string hostile_block() {
+  return "title = " + hostile_toml() + R"(
+units = "reduced"
+mass = 1.0
+[packing]
+pitch = "relaxed"
+[box]
+cells = [4, 4, 4]
+periodic = "xyz"
+[law]
+kind = "lj"
+epsilon = 1.0
+sigma = 1.0
+cutoff = 1.8
+)";
+}
+
 // Whether a terminal would show all of it: no controls but '\n', no C1, no mark of writing direction.
 inline bool is_tame(const std::string& text) {
   for (size_t k = 0; k < text.size(); ++k) {

@@ -92,6 +92,14 @@ std::set<std::string> documented(const std::string& page) {
   return keys;
 }
 
+// All that a page documents, and that is more than `least`.
+void expect_read(const std::string& page, const std::set<std::string>& read, size_t least) {
+  const auto named = documented(page);
+  EXPECT_GT(named.size(), least);
+  for (const std::string& key : named)
+    EXPECT_TRUE(read.contains(key)) << key << " is documented but not read";
+}
+
 // All keys that readers ask for, over scenes that between them take every branch.
 std::set<std::string> scene_keys() {
   const test::Folder folder;
@@ -204,10 +212,7 @@ TEST(Docs, EverySceneKeyIsDocumentedAndViceVersa) {
   const auto keys = scene_keys();
   EXPECT_GT(keys.size(), 80U);
   expect_documented(page, keys);
-  const auto named = documented(page);
-  EXPECT_GT(named.size(), 50U);
-  for (const std::string& key : named)
-    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+  expect_read(page, keys, 50);
 }
 
 TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
@@ -218,10 +223,7 @@ TEST(Docs, EveryArchKeyIsDocumentedAndViceVersa) {
   parse_arch("name = \"t\"\n[boards]\nnodes = [1, 1, 1]\n", "boards");
   record_config_keys(nullptr);
   expect_documented(page, keys);
-  const auto named = documented(page);
-  EXPECT_GT(named.size(), 20U);
-  for (const std::string& key : named)
-    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+  expect_read(page, keys, 20);
 }
 
 #ifdef CUBOCT_HAS_STUDIES
@@ -249,10 +251,7 @@ TEST(Docs, EveryStudyKeyIsDocumentedAndViceVersa) {
       asked.insert(key);  // names that the user chose
   EXPECT_GT(asked.size(), 40U);
   expect_documented(page, asked);
-  const auto named = documented(page);
-  EXPECT_GT(named.size(), 40U);
-  for (const std::string& key : named)
-    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+  expect_read(page, keys, 40);
 }
 #endif
 
@@ -280,10 +279,7 @@ TEST(Docs, EveryKeyOfStudiesOfMachinesIsDocumentedAndViceVersa) {
     return key.starts_with("evolve.") && asked.contains("machines." + key.substr(7));
   });
   expect_documented(page, asked);
-  const auto named = documented(page);
-  EXPECT_GT(named.size(), 40U);
-  for (const std::string& key : named)
-    EXPECT_TRUE(asked.contains(key)) << key << " is documented but not read";
+  expect_read(page, asked, 40);
 }
 #endif
 
@@ -315,10 +311,7 @@ TEST(Docs, EveryFitKeyIsDocumentedAndViceVersa) {
   }
   EXPECT_GT(asked.size(), 30U);
   expect_documented(page, asked);
-  const auto named = documented(page);
-  EXPECT_GT(named.size(), 20U);
-  for (const std::string& key : named)
-    EXPECT_TRUE(keys.contains(key)) << key << " is documented but not read";
+  expect_read(page, keys, 20);
 }
 #endif
 

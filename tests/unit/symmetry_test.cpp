@@ -191,32 +191,22 @@ normal = "z"
         bar({0, 0, 0}, "[[symmetry]]\nnormal = \"y\"\n", "pulled", "force = \"[1, 1, 0] N\"");
       }),
       "pulls particles out");
+  const auto turned = [](const std::string& axes) {
+    return refused_with([&] {
+      parse_scene("mass = \"1 g\"\npacking = { pitch = \"1 mm\", axes = " + axes + R"( }
+geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }
+law = { kind = "elastic", stiffness = "1 kN/m" }
+run = { steps = 1 }
+[[symmetry]]
+normal = "x"
+)",
+                  "turned.toml");
+    });
+  };
   // {111} planes are no mirrors of the packing.
-  has(refused_with([&] {
-        parse_scene(R"(mass = "1 g"
-packing = { pitch = "1 mm", axes = [[1, 1, 1], [1, -1, 0]] }
-geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }
-law = { kind = "elastic", stiffness = "1 kN/m" }
-run = { steps = 1 }
-[[symmetry]]
-normal = "x"
-)",
-                    "turned.toml");
-      }),
-      "not its own mirror image along x");
+  has(turned("[[1, 1, 1], [1, -1, 0]]"), "not its own mirror image along x");
   // {110} planes are, but a bond crosses them.
-  has(refused_with([&] {
-        parse_scene(R"(mass = "1 g"
-packing = { pitch = "1 mm", axes = [[1, 1, 0], [-1, 1, 0]] }
-geometry = { shape = "box", min = "[0, -3, -3] mm", max = "[6, 3, 3] mm" }
-law = { kind = "elastic", stiffness = "1 kN/m" }
-run = { steps = 1 }
-[[symmetry]]
-normal = "x"
-)",
-                    "turned.toml");
-      }),
-      "would feel their images");
+  has(turned("[[1, 1, 0], [-1, 1, 0]]"), "would feel their images");
 }
 
 }  // namespace

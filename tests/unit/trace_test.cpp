@@ -29,6 +29,14 @@ namespace fs = std::filesystem;
 class TraceFile : public testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_.path(name); }
+  // A trace of which a number says something else.
+  void write_with(const char* attribute, uint64_t value) const {
+    write_trace(path("t.h5"), made_trace());
+    const hid_t file = H5Fopen(path("t.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t at = H5Aopen(file, attribute, H5P_DEFAULT);
+    EXPECT_GE(H5Awrite(at, H5T_NATIVE_UINT64, &value), 0);
+    H5Aclose(at), H5Fclose(file);
+  }
 
   const test::Folder folder_;
   const fs::path directory_ = folder_.path();
@@ -161,12 +169,7 @@ TEST_F(TraceFile, KeepsHashesWithStepsLeftOut) {
 
 // A file of an older format says so.
 TEST_F(TraceFile, RefusesAnotherVersion) {
-  write_trace(path("t.h5"), made_trace());
-  const hid_t file = H5Fopen(path("t.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t version = H5Aopen(file, "version", H5P_DEFAULT);
-  const uint32_t old = 1;
-  ASSERT_GE(H5Awrite(version, H5T_NATIVE_UINT32, &old), 0);
-  H5Aclose(version), H5Fclose(file);
+  write_with("version", 1);
   EXPECT_EQ(refused_with([&] { read_trace(path("t.h5")); }),
             path("t.h5") + " is a trace of version 1; this program reads version 2");
 }
@@ -188,12 +191,7 @@ TEST_F(TraceFile, SaysHowTheRunEnded) {
 }
 
 TEST_F(TraceFile, RefusesAStepCountThatItsHashesContradict) {
-  write_trace(path("t.h5"), made_trace());
-  const hid_t file = H5Fopen(path("t.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-  const hid_t steps = H5Aopen(file, "steps", H5P_DEFAULT);
-  const uint64_t wrong = 3;
-  ASSERT_GE(H5Awrite(steps, H5T_NATIVE_UINT64, &wrong), 0);
-  H5Aclose(steps), H5Fclose(file);
+  write_with("steps", 3);
   EXPECT_EQ(refused_with([&] { read_trace(path("t.h5")); }),
             path("t.h5") + " is not a cuboct trace: steps and state hashes disagree in length");
 }

@@ -335,20 +335,7 @@ TEST_F(View, TellsWhatTheRunRefuses) {
 }
 
 TEST_F(View, HostileTextIsText) {
-  std::ofstream(path("evil.toml")) << "title = " << hostile_toml() << R"(
-units = "reduced"
-mass = 1.0
-[packing]
-pitch = "relaxed"
-[box]
-cells = [4, 4, 4]
-periodic = "xyz"
-[law]
-kind = "lj"
-epsilon = 1.0
-sigma = 1.0
-cutoff = 1.8
-[[material]]
+  std::ofstream(path("evil.toml")) << hostile_block() << R"([[material]]
 name = "so<script>alert(1)<!--ft"
 [run]
 dt = 0.004

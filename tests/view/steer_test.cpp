@@ -26,12 +26,6 @@ std::vector<std::string> with(std::vector<std::string> words, const std::vector<
   return words;
 }
 
-size_t count(const std::string& text, const std::string& part) {
-  size_t found = 0;
-  for (size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
-
 std::string part(const std::string& out, int k) {
   return out + "/" + std::to_string(k) + "-part-" + std::to_string(k);
 }
