@@ -85,33 +85,13 @@ class RealDomain {
       own.push_back(slabs[s]->ids(places));
       for (uint32_t k = 0; k < own[s].size(); ++k) owner_[own[s][k]] = s, place_[own[s][k]] = k;
     }
-    std::vector<std::vector<std::vector<uint32_t>>> ghosts(own.size());  // of a slab, by owner
-    for (size_t s = 0; s < own.size(); ++s) {
-      ghosts[s].resize(own.size());
-      for (const uint32_t id : own[s])
-        for (uint64_t b = rows_.begin(id); b < rows_.end(id); ++b)
-          if (const uint32_t other = rows_.other[b]; owner_[other] != s)
-            ghosts[s][owner_[other]].push_back(other);
-      for (std::vector<uint32_t>& of : ghosts[s]) {
-        std::sort(of.begin(), of.end());
-        of.erase(std::unique(of.begin(), of.end()), of.end());
-      }
-    }
+    const auto ghosts = bonded_ghosts(own, owner_, [&](uint32_t id, const auto& use) {
+      for (uint64_t b = rows_.begin(id); b < rows_.end(id); ++b) use(rows_.other[b]);
+    });
     const std::vector<bool> written = written_bonds(program_);
     places.bonds.assign(written.size(), 0);
     for (size_t s = 0; s < own.size(); ++s) {
-      std::vector<uint32_t> sent, here = place_;  // here: by id
-      for (uint32_t to = 0; to < own.size(); ++to) {
-        const std::vector<uint32_t>& of = ghosts[to][s];
-        if (of.empty()) continue;
-        slabs[s]->sendings.push_back(
-            {to, static_cast<uint32_t>(sent.size()), static_cast<uint32_t>(of.size()), 0});
-        for (const uint32_t id : of) sent.push_back(place_[id]);
-      }
-      slabs[s]->sent.set(slabs[s]->stream, sent);
-      auto next = static_cast<uint32_t>(own[s].size());
-      for (const std::vector<uint32_t>& of : ghosts[s])
-        for (const uint32_t id : of) here[id] = next++;
+      const std::vector<uint32_t> here = list_ghosts(*slabs[s], s, own[s].size(), place_, ghosts);
       put_rows(*slabs[s], own[s], here, start, kinds, written);
       for (const auto& of_round : numbers_of_kinds) {
         std::vector<Real> numbers;
@@ -135,7 +115,7 @@ class RealDomain {
       Slab& slab = *slabs[s];
       slab.put_in_bins(places, moves ? slab.all : slab.own, bins, cut_, moves ? static_cast<int>(s) : -1,
                        block_);
-      slab.own = slab.all - (moves ? slab.sent_in_all() : 0);
+      slab.own = slab.all - (moves ? sent_in_all(slab.sendings) : 0);
       slab.gather(frame, places, block_);
       slab.all = slab.own;
     }
@@ -152,7 +132,7 @@ class RealDomain {
   // What a round and a step made that pairs read of partners, from copies that the state is about to be in.
   // `moved`: the step's last round, of a rule that moves.
   void push(Slab& slab, const std::vector<uint32_t>& made, bool moved, uint32_t number) {
-    for (const typename Slab::Sending& sending : slab.sendings) {
+    for (const RoundsSending& sending : slab.sendings) {
       Slab& other = *slabs[sending.to];
       RealPush<Real, Number> push{};
       push.sent = slab.sent.data() + sending.first, push.first = sending.at;
@@ -248,16 +228,6 @@ class RealDomain {
   // What ghosts are seen by is made anew from their owners' numbers.
   void refresh_ghosts() {
     if (!alone()) carry();
-  }
-
-  void wait_for_all() const {
-    for (const auto& slab : slabs) slab->stream.synchronize();
-  }
-
-  uint64_t ghosts() const {
-    uint64_t ghosts = 0;
-    for (const auto& slab : slabs) ghosts += slab->all - slab->own;
-    return ghosts;
   }
 
   RealSpace space;
@@ -376,33 +346,14 @@ class RealDomain {
   // Sends the particles that `choose(slab, number)` picks, into the places behind those that slabs have.
   template <class Choose>
   void send(const Choose& choose) {
-    for (int s = 0; s < cut_.count; ++s) slabs[index(s)]->count_sent(choose(*slabs[index(s)], s), block_);
-    for (int s = 0; s < cut_.count; ++s) slabs[index(s)]->list_sent(choose(*slabs[index(s)], s), block_);
+    list_sent(slabs, cut_.count, block_, choose);
     carry();
   }
 
   void carry() {
-    std::vector<size_t> all;
-    for (auto& slab : slabs) all.push_back(slab->own);
+    place_sendings(slabs, [&](Slab& slab, size_t all, size_t kept) { make_room(slab, all, kept); });
     for (auto& slab : slabs)
-      for (typename Slab::Sending& sending : slab->sendings) {
-        sending.at = static_cast<uint32_t>(all[sending.to]);
-        all[sending.to] += sending.count;
-      }
-    for (auto& slab : slabs) {
-      slab->beside.clear();
-      for (auto& other : slabs)
-        if (other != slab && (sends(*slab, *other) || sends(*other, *slab)))
-          slab->beside.push_back(other.get());
-    }
-    // What is written there is written after this.
-    wait_for_all();
-    for (size_t s = 0; s < slabs.size(); ++s) {
-      make_room(*slabs[s], all[s], slabs[s]->own);
-      slabs[s]->all = static_cast<uint32_t>(all[s]);
-    }
-    for (auto& slab : slabs)
-      for (const typename Slab::Sending& sending : slab->sendings) {
+      for (const RoundsSending& sending : slab->sendings) {
         Slab& to = *slabs[sending.to];
         Frame both = slab->frame_of(frame, places, places.at);
         const typename Slab::Copy& there = to.copies[places.at];
@@ -415,11 +366,7 @@ class RealDomain {
                  RealCarry<Real, Number>{slab->sent.data() + sending.first, sending.at, both, who.type.data(),
                                          who.id.data(), static_cast<int>(places.fields.size())});
       }
-    wait_for_all();
-  }
-  bool sends(const Slab& from, const Slab& to) const {
-    return std::any_of(from.sendings.begin(), from.sendings.end(),
-                       [&](const auto& sending) { return slabs[sending.to].get() == &to; });
+    wait_for_all(slabs);
   }
   // As wide as the list to be made reaches.
   RealBins bins() {

@@ -169,7 +169,7 @@ class RealRoundsEngine final : public RealRounds {
     return {{"list_builds", static_cast<double>(builds_)},
             {"longest_list", static_cast<double>(domain_.longest_list)},
             {"listed_pairs", domain_.listed_pairs},
-            {"halo_particles", static_cast<double>(domain_.ghosts())}};
+            {"halo_particles", static_cast<double>(ghosts_of(domain_.slabs))}};
   }
   std::string kernels() const override { return how_; }
 
@@ -292,7 +292,7 @@ class RealRoundsEngine final : public RealRounds {
   Told what_was_told() {
     Told told;
     controls_.clear();
-    domain_.wait_for_all();
+    wait_for_all(domain_.slabs);
     for (auto& slab : domain_.slabs) {
       controls_.push_back(slab->control.host(slab->stream, 0, 1)[0]);
       told.lost = std::min(told.lost, controls_.back().lost);
@@ -322,16 +322,7 @@ class RealRoundsEngine final : public RealRounds {
   void step(uint32_t number, bool looks) {
     const size_t rounds = program_.rounds.size();
     for (size_t k = 0; k < rounds; ++k) {
-      // A round begins when the slabs beside are done with the one before: what they send is there, and none
-      // still reads the ghosts that this one goes on to write. A step begins when all slabs are: what one of
-      // them told of the last step is known.
-      for (auto& slab : domain_.slabs) {
-        if (k > 0)
-          for (const Slab* other : slab->beside) slab->stream.wait(other->done);
-        else
-          for (const auto& other : domain_.slabs)
-            if (other != slab) slab->stream.wait(other->done);
-      }
+      begin_round(domain_.slabs, k == 0);
       const ProgramRound& of = program_.rounds[k];
       std::vector<uint32_t> seen;
       for (const ProgramWrite& write : of.made)

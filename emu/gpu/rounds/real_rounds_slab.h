@@ -11,8 +11,8 @@
 #include "emu/gpu/device/loaded_kernels.h"
 #include "emu/gpu/rounds/real_rounds_kernel.h"
 #include "emu/gpu/rounds/real_rounds_list.h"
-#include "emu/gpu/rounds/rounds_halo.h"
 #include "emu/gpu/rounds/rounds_list.h"
+#include "emu/gpu/rounds/rounds_sending.h"
 
 namespace cuboct::gpu {
 
@@ -35,11 +35,6 @@ struct RealSlab {
     Array<uint8_t> type;
     Array<uint32_t> id;
   };
-  // Particles that another slab gets: where they stand in `sent`, and there.
-  struct Sending {
-    uint32_t to, first, count, at;
-  };
-
   // With so many numbers of fields.
   RealSlab(int device, size_t numbers, bool displaced, bool bonded)
       : stream(device), displaced_(displaced), bonded_(bonded) {
@@ -103,31 +98,6 @@ struct RealSlab {
     return frame;
   }
 
-  // How many of the own particles `choice` sends to each slab; then which: list_sent() waits for the counts.
-  template <class Choice>
-  void count_sent(const Choice& choice, int block) {
-    sent_count.zero(stream);
-    for_each(stream, 0, own, block, RoundsCountSent<Choice>{choice, sent_count.data()});
-  }
-  template <class Choice>
-  void list_sent(const Choice& choice, int block) {
-    const std::vector<uint32_t> to = sent_count.host(stream, 0, kMostSlabs);
-    std::vector<uint32_t> next;
-    sendings.clear();
-    uint32_t first = 0;
-    for (uint32_t s = 0; s < to.size(); ++s) {
-      next.push_back(first);
-      if (to[s] > 0) sendings.push_back({s, first, to[s], 0});
-      first += to[s];
-    }
-    if (sent.size() < first) sent.resize(first + first / 8);
-    sent_count.put(stream, 0, next);
-    for_each(stream, 0, own, block, RoundsListSent<Choice>{choice, sent_count.data(), sent.data()});
-  }
-  uint32_t sent_in_all() const {
-    return sendings.empty() ? 0 : sendings.back().first + sendings.back().count;
-  }
-
   // Counts particles in bins, and brings their numbers into the order of bins and of ids.
   void put_in_bins(const RealPlaces& places, uint32_t particles, const RealBins& bins, const RealCut& cut,
                    int self, int block) {
@@ -182,7 +152,7 @@ struct RealSlab {
   Array<RealFour<Real>> tables;
   Array<RealControl> control;
   Array<RealControl*> others;
-  std::vector<Sending> sendings;
+  std::vector<RoundsSending> sendings;
   std::vector<RealSlab*> beside;  // those that it sends to, or gets something from
   uint32_t width = 0;
 

@@ -101,7 +101,7 @@ class RoundsDomain {
     const bool moves = rows_ == nullptr && !alone();
     if (moves) migrate();
     for (auto& slab : slabs) slab->bin_count.zero(slab->stream), slab->occupancy.zero(slab->stream);
-    if (!alone()) wait_for_all();  // a slab may count in another one's cells
+    if (!alone()) wait_for_all(slabs);  // a slab may count in another one's cells
     for (size_t s = 0; s < slabs.size(); ++s) {
       RoundsSlab& slab = *slabs[s];
       for_each(slab.stream, 0, moves ? slab.all : slab.own, block_,
@@ -111,7 +111,7 @@ class RoundsDomain {
     if (rows_ != nullptr) return serve_bonds();
     for (auto& slab : slabs) {
       const uint32_t before = slab->all;
-      slab->own = before - (moves ? slab->sent_in_all() : 0);
+      slab->own = before - (moves ? sent_in_all(slab->sendings) : 0);
       slab->sort(places, before, bin_total_, guard_, frac_, coarse_shift_, block_);
       slab->all = slab->own;
     }
@@ -135,16 +135,6 @@ class RoundsDomain {
     bonds.position_frac = program_.position_frac;
     for (int a = 0; a < 3; ++a) bonds.period[a] = int64_t{slab.cells.period[a]} << program_.position_frac;
     return bonds;
-  }
-
-  void wait_for_all() const {
-    for (const auto& slab : slabs) slab->stream.synchronize();
-  }
-
-  uint64_t ghosts() const {
-    uint64_t ghosts = 0;
-    for (const auto& slab : slabs) ghosts += slab->all - slab->own;
-    return ghosts;
   }
 
   uint64_t bytes = 0, longest_list = 0;  // of all devices' memory; partners of one particle
@@ -276,42 +266,14 @@ class RoundsDomain {
         const uint32_t id = state.particles[own[s][k]].id;
         owner[id] = s, place[id] = k;
       }
-    const auto ids = [&](size_t s) {
-      std::vector<uint32_t> ids;
-      for (const uint32_t k : own[s]) ids.push_back(state.particles[k].id);
-      return ids;
-    };
-    // Of each slab the others' particles that its bonds go to, by owner.
-    std::vector<std::vector<std::vector<uint32_t>>> ghosts(own.size());
-    for (size_t s = 0; s < own.size(); ++s) {
-      ghosts[s].resize(own.size());
-      for (const uint32_t id : ids(s))
-        for (uint64_t b = rows_->first[id]; b < rows_->first[id + 1]; ++b)
-          if (const uint32_t other = rows_->other[b]; owner[other] != s)
-            ghosts[s][owner[other]].push_back(other);
-      for (std::vector<uint32_t>& of : ghosts[s]) {
-        std::sort(of.begin(), of.end());
-        of.erase(std::unique(of.begin(), of.end()), of.end());
-      }
-    }
-    for (size_t s = 0; s < own.size(); ++s) {
-      std::vector<uint32_t> sent;
-      for (uint32_t to = 0; to < own.size(); ++to) {
-        const std::vector<uint32_t>& of = ghosts[to][s];
-        if (of.empty()) continue;
-        slabs[s]->sendings.push_back(
-            {to, static_cast<uint32_t>(sent.size()), static_cast<uint32_t>(of.size()), 0});
-        for (const uint32_t id : of) sent.push_back(place[id]);
-      }
-      slabs[s]->sent.set(slabs[s]->stream, sent);
-    }
-    for (size_t s = 0; s < own.size(); ++s) {
-      std::vector<uint32_t> here = place;  // by id
-      auto next = static_cast<uint32_t>(own[s].size());
-      for (const std::vector<uint32_t>& of : ghosts[s])
-        for (const uint32_t id : of) here[id] = next++;
-      put_rows(*slabs[s], ids(s), here, state.bonds);
-    }
+    std::vector<std::vector<uint32_t>> ids(own.size());
+    for (size_t s = 0; s < own.size(); ++s)
+      for (const uint32_t k : own[s]) ids[s].push_back(state.particles[k].id);
+    const auto ghosts = bonded_ghosts(ids, owner, [&](uint32_t id, const auto& use) {
+      for (uint64_t b = rows_->first[id]; b < rows_->first[id + 1]; ++b) use(rows_->other[b]);
+    });
+    for (size_t s = 0; s < own.size(); ++s)
+      put_rows(*slabs[s], ids[s], list_ghosts(*slabs[s], s, own[s].size(), place, ghosts), state.bonds);
     carry();
   }
 
@@ -362,33 +324,14 @@ class RoundsDomain {
   // Sends the particles that `choice(slab, number)` picks, into the places behind those that slabs have.
   template <class Choose>
   void send(const Choose& choose) {
-    for (int s = 0; s < cuts_.count; ++s) slabs[index(s)]->count_sent(choose(*slabs[index(s)], s), block_);
-    for (int s = 0; s < cuts_.count; ++s) slabs[index(s)]->list_sent(choose(*slabs[index(s)], s), block_);
+    list_sent(slabs, cuts_.count, block_, choose);
     carry();
   }
 
   void carry() {
-    std::vector<size_t> all;
-    for (auto& slab : slabs) all.push_back(slab->own);
+    place_sendings(slabs, [&](RoundsSlab& slab, size_t all, size_t kept) { make_room(slab, all, kept); });
     for (auto& slab : slabs)
-      for (RoundsSlab::Sending& sending : slab->sendings) {
-        sending.at = static_cast<uint32_t>(all[sending.to]);
-        all[sending.to] += sending.count;
-      }
-    for (auto& slab : slabs) {
-      slab->beside.clear();
-      for (auto& other : slabs)
-        if (other != slab && (sends(*slab, *other) || sends(*other, *slab)))
-          slab->beside.push_back(other.get());
-    }
-    // What is written there is written after this.
-    wait_for_all();
-    for (size_t s = 0; s < slabs.size(); ++s) {
-      make_room(*slabs[s], all[s], slabs[s]->own);
-      slabs[s]->all = static_cast<uint32_t>(all[s]);
-    }
-    for (auto& slab : slabs)
-      for (const RoundsSlab::Sending& sending : slab->sendings) {
+      for (const RoundsSending& sending : slab->sendings) {
         RoundsSlab& to = *slabs[sending.to];
         RoundsSlab::Copy& who = to.copies[places.who];
         for_each(
@@ -397,12 +340,7 @@ class RoundsDomain {
                         who.type.data(), who.id.data(), rows_ == nullptr ? to.near_at.data() : nullptr,
                         guard_, coarse_shift_, numbers_});
       }
-    wait_for_all();
-  }
-
-  bool sends(const RoundsSlab& from, const RoundsSlab& to) const {
-    return std::any_of(from.sendings.begin(), from.sendings.end(),
-                       [&](const RoundsSlab::Sending& sending) { return slabs[sending.to].get() == &to; });
+    wait_for_all(slabs);
   }
 
   // Particles go to the slabs that own their cells. They stand behind those that were there.

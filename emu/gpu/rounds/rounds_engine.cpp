@@ -96,7 +96,7 @@ class RoundsEngine final : public IntegerEngine {
             {"golden_steps", static_cast<double>(golden_steps_)},
             {"longest_list", static_cast<double>(domain_.longest_list)},
             {"listed_pairs", domain_.listed_pairs},
-            {"halo_particles", static_cast<double>(domain_.ghosts())},
+            {"halo_particles", static_cast<double>(ghosts_of(domain_.slabs))},
             {"device_bytes", static_cast<double>(domain_.bytes)}};
   }
   Notes notes() const override { return {{"kernels", how_}}; }
@@ -177,7 +177,7 @@ class RoundsEngine final : public IntegerEngine {
       if (hashes != nullptr)
         for (auto& slab : domain_.slabs) add_hashes(*slab, n);
     }
-    domain_.wait_for_all();
+    wait_for_all(domain_.slabs);
     told_ = {};
     std::vector<RoundsControl> controls;
     for (auto& slab : domain_.slabs) {
@@ -235,16 +235,7 @@ class RoundsEngine final : public IntegerEngine {
     for (size_t k = 0; k < rounds; ++k) {
       const Made made = made_by(program_.rounds[k]);
       const bool last = k + 1 == rounds;
-      // A round begins when the slabs beside are done with the one before: what they send is there, and none
-      // still reads the ghosts that this one goes on to write. A step begins when all slabs are: one that
-      // some slab found impossible is known before the next writes over the state that it began with.
-      for (auto& slab : domain_.slabs) {
-        if (k > 0)
-          for (const RoundsSlab* other : slab->beside) slab->stream.wait(other->done);
-        else
-          for (const auto& other : domain_.slabs)
-            if (other != slab) slab->stream.wait(other->done);
-      }
+      begin_round(domain_.slabs, k == 0);
       for (auto& slab : domain_.slabs) {
         slab->launch(frame(*slab, made, k, number), k, block_);
         push(*slab, made, last, number);
@@ -277,7 +268,7 @@ class RoundsEngine final : public IntegerEngine {
   }
   // What the round made and pairs read of partners goes to the ghosts.
   void push(RoundsSlab& slab, const Made& made, bool last, uint32_t number) {
-    for (const RoundsSlab::Sending& sending : slab.sendings) {
+    for (const RoundsSending& sending : slab.sendings) {
       RoundsSlab& other = *domain_.slabs[sending.to];
       RoundsPush push{};
       push.sent = slab.sent.data() + sending.first, push.first = sending.at;

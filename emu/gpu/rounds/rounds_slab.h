@@ -10,6 +10,7 @@
 #include "emu/gpu/device/loaded_kernels.h"
 #include "emu/gpu/rounds/rounds_interpreter.h"
 #include "emu/gpu/rounds/rounds_list.h"
+#include "emu/gpu/rounds/rounds_sending.h"
 #include "model/contract/state.h"
 
 namespace cuboct::gpu {
@@ -30,11 +31,6 @@ class RoundsSlab {
     Array<uint8_t> type;
     Array<uint32_t> id;
   };
-  // What goes to another slab: sent[first, first + count), to its places from `at` on.
-  struct Sending {
-    uint32_t to, first, count, at;
-  };
-
   // `displaced`: particles have displacements. `account` holds the bytes of all slabs.
   RoundsSlab(int device, const graph::FixedProgram& program, bool displaced, uint64_t* account)
       : stream(device),
@@ -169,31 +165,6 @@ class RoundsSlab {
     }
   }
 
-  // How many of the own particles `choice` sends to each slab; then which: list_sent() waits for the counts.
-  template <class Choice>
-  void count_sent(const Choice& choice, int block) {
-    sent_count.zero(stream);
-    for_each(stream, 0, own, block, RoundsCountSent<Choice>{choice, sent_count.data()});
-  }
-  template <class Choice>
-  void list_sent(const Choice& choice, int block) {
-    const std::vector<uint32_t> to = sent_count.host(stream, 0, kMostSlabs);
-    std::vector<uint32_t> next;
-    sendings.clear();
-    uint32_t first = 0;
-    for (uint32_t s = 0; s < to.size(); ++s) {
-      next.push_back(first);
-      if (to[s] > 0) sendings.push_back({s, first, to[s], 0});
-      first += to[s];
-    }
-    if (sent.size() < first) sent.resize(first + first / 8);
-    sent_count.put(stream, 0, next);
-    for_each(stream, 0, own, block, RoundsListSent<Choice>{choice, sent_count.data(), sent.data()});
-  }
-  uint32_t sent_in_all() const {
-    return sendings.empty() ? 0 : sendings.back().first + sendings.back().count;
-  }
-
   // Into the order of bins, in the other copies. `before`: particles that stand here, those that leave too.
   void sort(const RoundsPlaces& places, uint32_t before, uint32_t bins, int guard, int frac, int coarse_shift,
             int block) {
@@ -266,7 +237,7 @@ class RoundsSlab {
   Array<RoundsControl> control;
   Array<uint64_t> hashes;
   Array<TableEntry> table_entries;
-  std::vector<Sending> sendings;
+  std::vector<RoundsSending> sendings;
   std::vector<RoundsSlab*> beside;  // those that it sends to, or gets something from
   uint32_t width = 0, longest = 0;
 
