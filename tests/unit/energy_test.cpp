@@ -106,6 +106,17 @@ TEST(Energy, TermsByHand) {
   EXPECT_NEAR(row(e, "leakage of memories").picojoules.low, 1e-5 * nodes * bits, 1e-9 * bits);
 }
 
+// Bricks and narrow memories have ports that answer in each cycle; the others' rest.
+TEST(Energy, PortsThatAnswerInEachCycleAreClockedInEach) {
+  for (const bool narrow : {false, true}) {
+    Plan plan = block();
+    plan.arch.narrow_memories = narrow;
+    const Energy e = energy_of(plan, events(), traffic(), kCycles, kClock, made());
+    EXPECT_DOUBLE_EQ(row(e, "clock: gates and control").picojoules.low,
+                     (narrow ? 0.12 : 0.05) * kCycles * plan.nodes() * register_bits(plan).low);
+  }
+}
+
 // The enable of an FPGA's register stops no net of the clock; pipelines of rules have none within.
 TEST(Energy, AnFpgasRegistersAreClockedInEachCycle) {
   Technology fpga = made();
