@@ -187,8 +187,9 @@ void add_clock(Sheet& sheet, const Plan& plan, const MachineEvents& e, double cy
                const Technology& technology) {
   // Of synthesised nodes with their own traffic (docs/measured/energy.md): loads of registers over those that
   // the work lists have, 1.28 to 1.9, as values also wait in registers; gates, registers without one and
-  // control, 0.062 to 0.10 of all registers in each cycle, also of a node without particles. Bricks and narrow
-  // memories have ports that answer in each cycle: 0.15 to 0.23, as the others had before theirs rested.
+  // control, 0.062 to 0.10 of all registers in each cycle, also of a node without particles. Bricks and
+  // narrow memories have ports that answer in each cycle: 0.15 to 0.23, as the others had before theirs
+  // rested.
   constexpr Band kLoads{1.2, 1.9}, kRests{0.05, 0.11}, kAnswers{0.12, 0.25};
   const Band always = plan.arch.narrow_memories || !plan.bricks.one_cell() ? kAnswers : kRests;
   const auto each = static_cast<double>(plan.nodes()) * cycles;
