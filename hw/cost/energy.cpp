@@ -243,7 +243,7 @@ Band register_bits(const Plan& plan) {
                       faces(plan) * work.cull.register_bits + work.update.register_bits +
                       2 * faces(plan) * (beat_bits(plan) + 1);
   if (plan.program != nullptr)
-    return (bits + faces(plan) * plan.words.particle_bits + bond_register_bits(plan)) * kRounds;
+    return (bits + faces(plan) * received_bits(plan) + bond_register_bits(plan)) * kRounds;
   return bits * (arch.narrow_memories ? kNarrow : kWide);
 }
 

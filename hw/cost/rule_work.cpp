@@ -202,6 +202,7 @@ std::vector<Memory> memories_of(const Plan& plan, const MachineEvents& e) {
       put(Kind::late, fmt::format("particles in the finish of round {}", k + 1),
           std::bit_ceil(static_cast<uint64_t>(waits)), rounds.own_bits(), 1, updates, updates);
   }
+  const bool moves = graph::moves(plan.program->program);
   MachineEvents along = e;
   for (int a = 0; a < axes; ++a) {
     const uint64_t depth = (a == 0 ? 1u : a == 1 ? 3u : 9u) * capacity;
@@ -216,7 +217,7 @@ std::vector<Memory> memories_of(const Plan& plan, const MachineEvents& e) {
     }
     // Which axis a particle came along no event tells: it is told of the last one.
     const uint64_t moved = a + 1 == axes ? e.moved : 0;
-    ram("particles from a face", capacity, plan.words.particle_bits, 2, moved, moved);
+    if (moves) ram("particles from a face", capacity, plan.words.particle_bits, 2, moved, moved);
   }
   for (size_t k = 0; k < plan.rounds.size(); ++k) {
     for (const pipeline::Rom& rom : rounds.pairs[k].resources.roms)
@@ -230,6 +231,12 @@ std::vector<Memory> memories_of(const Plan& plan, const MachineEvents& e) {
 }
 
 }  // namespace
+
+int received_bits(const Plan& plan) {
+  int most = graph::moves(plan.program->program) ? plan.words.particle_bits : 1;
+  for (const PlanRound& round : plan.rounds) most = std::max(most, bits_of(round.record));
+  return most;
+}
 
 std::vector<NodeMemory> rule_memories(const Plan& plan) {
   std::vector<NodeMemory> memories;

@@ -21,6 +21,9 @@ DatapathWork rule_work(const Plan& plan);
 // and their numbers.
 double bond_register_bits(const Plan& plan);
 
+// Bits of a receiver's registers: of the widest that comes over a face, particles or a round's records.
+int received_bits(const Plan& plan);
+
 // The memories of the plan's node with its lanes and pipes, the tables among them.
 std::vector<NodeMemory> rule_memories(const Plan& plan);
 

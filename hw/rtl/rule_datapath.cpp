@@ -459,6 +459,7 @@ std::vector<std::pair<std::string, std::string>> rule_parameters(const Plan& pla
     all.emplace_back("BondBits", std::to_string(words.place_bits()));
     all.emplace_back("IdInCandidate", std::to_string(words.id_in_candidate()));
   }
+  if (!graph::moves(plan.program->program)) all.emplace_back("Moves", "0");
   return all;
 }
 

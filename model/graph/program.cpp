@@ -126,6 +126,14 @@ bool reads_step(const FixedProgram& program) {
                              [&](const Round& round) { return reads(round.pair) || reads(round.finish); });
 }
 
+bool moves(const FixedProgram& program) {
+  const std::vector<Node>& nodes = program.rounds.back().finish.nodes;
+  return std::ranges::any_of(program.motion.drift, [&](int k) {
+    const Node& node = nodes[static_cast<size_t>(k)];
+    return node.op != Op::constant || node.number != 0;
+  });
+}
+
 int FixedProgram::numbers() const { return place(static_cast<int>(fields.size())); }
 int FixedProgram::place(int field) const { return place_in(fields, field); }
 int FixedProgram::bond_numbers() const { return bond_place(static_cast<int>(bonds.size())); }

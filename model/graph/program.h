@@ -108,6 +108,8 @@ std::vector<int> finish_outputs(const FixedProgram& program, const Round& round)
 
 // Whether any term depends on the number of the step, as noise does.
 bool reads_step(const FixedProgram& program);
+// Whether a step may change a position: else no particle ever leaves its cell.
+bool moves(const FixedProgram& program);
 
 // Inputs with the range that the program gives them.
 int read_apart(Builder& b, const FixedProgram& program, int axis);

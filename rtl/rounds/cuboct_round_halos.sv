@@ -15,6 +15,7 @@ module cuboct_round_halos #(
   parameter int MostBits      = 62,   // of any round's
   parameter int CandidateBits = 126,
   parameter int ParticleBits  = 128,
+  parameter int Moves         = 1,    // 0: no particle ever comes
   parameter int AddrBits      = 8,    // of a record's number in any segment
   parameter int CountBits     = 9,    // of a segment's count
   localparam int Faces        = 2 * Axes
@@ -81,11 +82,12 @@ module cuboct_round_halos #(
     localparam int Depth = ((Axis == 0) ? 1 : (Axis == 1) ? 3 : 9) * Capacity;
 
     logic [Rounds-1:0]        halo_valid, end_of;
+    localparam int MigrateBits = (Moves != 0) ? ParticleBits : 1;
     logic                     migrate_valid, migrate_full, empty_next;
     logic [MostBits-1:0]      halo;
-    logic [ParticleBits-1:0]  particle;
+    logic [MigrateBits-1:0]   particle, oldest;
     cuboct_round_rx #(
-      .LinkBits(LinkBits), .Rounds(Rounds), .RecordBits(RecordBits), .MostBits(MostBits), .MigrateBits(ParticleBits)
+      .LinkBits(LinkBits), .Rounds(Rounds), .RecordBits(RecordBits), .MostBits(MostBits), .MigrateBits(MigrateBits)
     ) u_rx (
       .clk_i, .rst_ni, .valid_i(link_valid_i[f] && has_link_i[f]), .end_i(link_end_i[f]),
       .data_i(link_data_i[f*LinkBits +: LinkBits]), .halo_valid_o(halo_valid), .halo_o(halo), .halo_end_o(end_of),
@@ -112,8 +114,8 @@ module cuboct_round_halos #(
     logic                relay_clear;
     logic [CountBits-1:0] stream_count;
     cuboct_inbox #(
-      .HaloBits(HaloBits), .ParticleBits(ParticleBits), .HaloDepth(Depth), .Capacity(Capacity), .Relayed(Relayed),
-      .Arrival(0), .AddrBits(AddrBits), .CountBits(CountBits)
+      .HaloBits(HaloBits), .ParticleBits(MigrateBits), .HaloDepth(Depth), .Capacity(Capacity), .Particles(Moves),
+      .Relayed(Relayed), .Arrival(0), .AddrBits(AddrBits), .CountBits(CountBits)
     ) u_inbox (
       .clk_i, .rst_ni, .clear_i(halo_clear_i), .append_i(halo_valid[0]), .halo_i(moved), .count_o(stream_count),
       .read_i(stream_read_i[f]), .addr_i(stream_addr_i), .next_i(1'b0), .halo_o(streamed), .relay_append_i(1'b0),
@@ -121,9 +123,15 @@ module cuboct_round_halos #(
       .relay_clear_i(relay_clear), .relay_addr_i(relay_addr_i[AddrBits-1:0]),
       .relay_ahead_i({AddrBits{1'b0}}), .relay_halo_o(relayed_first),
       .migrating_i, .push_i(migrate_valid), .particle_i(particle), .full_o(migrate_full), .pop_i(migrate_pop_i[f]),
-      .particle_o(migrate_data_o[f*ParticleBits +: ParticleBits]), .empty_o(migrate_empty_o[f]),
-      .empty_next_o(empty_next)
+      .particle_o(oldest), .empty_o(migrate_empty_o[f]), .empty_next_o(empty_next)
     );
+    if (Moves != 0) begin : gen_particles
+      assign migrate_data_o[f*ParticleBits +: ParticleBits] = oldest;
+    end else begin : gen_no_particles
+      logic unused_oldest;
+      assign unused_oldest = ^oldest;
+      assign migrate_data_o[f*ParticleBits +: ParticleBits] = '0;
+    end
     assign halo_came_o[f]         = halo_valid[0];
     assign migrate_some_next_o[f] = !empty_next;
     assign migrate_over_next_o[f] = empty_next && (migrate_end_q[f] || migrate_end[f] || !has_link_i[f]);
@@ -186,7 +194,7 @@ module cuboct_round_halos #(
 `ifndef SYNTHESIS
     always_ff @(posedge clk_i) begin
       if (rst_ni && halo_valid[0]) a_halo_room: assert (halo_count_o[f*CountBits +: CountBits] != Depth[CountBits-1:0]);
-      if (rst_ni && migrate_valid) a_migrate_room: assert (!migrate_full);
+      if (rst_ni && migrate_valid) a_migrate_room: assert (Moves != 0 && !migrate_full);
     end
 `endif
     logic unused_full;

@@ -32,6 +32,7 @@ module cuboct_rule_core #(
   parameter int          BondLsb       = 0,   // of the row
   parameter int          BondBits      = 1,   // of a place, which begins with the partner's id
   parameter int          IdInCandidate = 0,   // where a candidate's id is; Bonds only
+  parameter int          Moves         = 1,   // 0: no particle leaves its node; of a migration the ends come alone
   localparam int         Faces         = 2 * Axes,
   localparam int         Phases        = 5 * Rounds + 3
 ) (
@@ -185,7 +186,8 @@ module cuboct_rule_core #(
   cuboct_round_halos #(
     .Axes(Axes), .PositionFrac(PositionFrac), .Capacity(Capacity), .LinkBits(LinkBits), .Rounds(Rounds),
     .RecordBits(RecordBits), .HaloBits(HaloBits), .MostBits(MostBits),
-    .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .AddrBits(AddrBits), .CountBits(CountBits)
+    .CandidateBits(CandidateBits), .ParticleBits(ParticleBits), .Moves(Moves), .AddrBits(AddrBits),
+    .CountBits(CountBits)
   ) u_halos (
     .clk_i, .rst_ni, .has_link_i, .link_valid_i, .link_end_i, .link_data_i, .halo_clear_i(last_force),
     .halo_end_o(halo_end), .halo_count_o(halo_count), .halo_came_o(halo_came),

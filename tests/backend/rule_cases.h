@@ -75,6 +75,19 @@ sum.force = "(1 kN/m + 0.1 kN/m * (crowd_i + crowd_j)) * (r - pitch) * d / r"
 finish.T = "T + heat / 30"
 )toml";
 
+// Velocities move nothing.
+inline const std::string kStill = R"toml(reach = "1.3 * pitch"
+still = true
+[rule.particle.T]
+unit = "K"
+range = "[0, 2000] K"
+resolution = "0.1 K"
+start = "300 K + 100 K * x.x / pitch"
+[[rule.round]]
+sum.heat = "0.03 * (T_j - T_i)"
+finish.T = "T + heat"
+)toml";
+
 inline Case case_of(const std::string& name, const std::string& text, const Arch& arch, uint64_t steps) {
   Case c;
   c.name = name, c.steps = steps;

@@ -61,6 +61,7 @@ const auto kName = [](const testing::TestParamInfo<RuleCase>& p) { return std::s
 INSTANTIATE_TEST_SUITE_P(
     Rules, RuleRtl,
     testing::Values(RuleCase{"one_round", kOneRound, 6, false, 8, 1, 16, true, 0},
+                    RuleCase{"still", kStill, 6, false, 3, 2, 4, true, 20},
                     RuleCase{"three_rounds", failing(false, false), 2, false, 3, 2, 4, true, 40},
                     RuleCase{"four_rounds", kFourRounds, 6, false, 3, 2, 4, true, 40},
                     RuleCase{"checked", kFourRounds, 4, false, 1, 1, 1, false, 23, LinkCheck::retry},

@@ -102,6 +102,11 @@ TEST(FitMemories, OfOtherPlansOfRulesOfTextAreThoseOfTheRtl) {
   EXPECT_EQ(text_of(counted(rounds)), text_of(elaborated(rounds)));
   const Plan bonds = test::BondedCase(test::kSprings, {}, arch).c.setup.plan;
   EXPECT_EQ(text_of(counted(bonds)), text_of(elaborated(bonds)));
+  const std::string file = CUBOCT_SOURCE_DIR "/scenes/rules/heat.toml";
+  const Plan still = program_plan_of(read_scene(file), arch);
+  EXPECT_FALSE(graph::moves(still.program->program));
+  EXPECT_EQ(text_of(counted(still)), text_of(elaborated(still)));
+  EXPECT_TRUE(graph::moves(rounds.program->program));
 }
 
 TEST(FitMemories, InBlocksOfTheDevice) {

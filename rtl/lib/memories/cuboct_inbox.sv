@@ -8,6 +8,7 @@ module cuboct_inbox #(
   parameter int ParticleBits = 128,  // >= 1
   parameter int HaloDepth    = 16,   // halo records, >= 1
   parameter int Capacity     = 16,   // particles, >= 1
+  parameter int Particles    = 1,    // 0: no particle ever comes
   parameter int Relayed      = 1,    // 1: a second read port for the relay
   parameter int Arrival      = 0,    // 1: the relay's records come apart, and what the streamer reads is a cycle later
   parameter int Ahead        = 0,    // 1: the relay reads in order, and a block memory is asked a record ahead for it
@@ -121,10 +122,22 @@ module cuboct_inbox #(
     logic unused_relay_record;
     assign unused_relay_record = ^{relay_append_i, relay_record_i, next_i};
   end
-  cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
-    .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i), .clear_i(1'b0),
-    .read_addr_i(read_d), .read_data_o(particle_o)
-  );
+  if (Particles != 0) begin : gen_particles
+    cuboct_ram #(.Bits(ParticleBits), .Depth(Capacity), .AddrBits(PlaceBits)) u_particles (
+      .clk_i, .write_i(push_i), .write_addr_i(write_q), .write_data_i(particle_i), .read_i(migrating_i),
+      .clear_i(1'b0), .read_addr_i(read_d), .read_data_o(particle_o)
+    );
+    assign full_o       = (held_q == Capacity[LevelBits-1:0]);
+    assign empty_o      = empty_q;
+    assign empty_next_o = empty_d;
+  end else begin : gen_no_particles
+    logic unused_particles;
+    assign unused_particles = ^{migrating_i, particle_i, write_q, read_d, held_q, empty_q};
+    assign particle_o       = '0;
+    assign full_o           = 1'b0;
+    assign empty_o          = 1'b1;
+    assign empty_next_o     = 1'b1;
+  end
   // The relay's answer rests at 0 while another face is read, so that its clock can.
   logic relay_wanted, relay_zero_q;
   assign relay_wanted = relay_read_i && !(relay_clear_i && relay_zero_q);
@@ -173,8 +186,5 @@ module cuboct_inbox #(
     assign relay_halo_o = '0;
   end
 
-  assign count_o    = count_q;
-  assign full_o     = (held_q == Capacity[LevelBits-1:0]);
-  assign empty_o    = empty_q;
-  assign empty_next_o = empty_d;
+  assign count_o = count_q;
 endmodule
