@@ -17,8 +17,8 @@ namespace {
 
 std::string size_of(const Scene& scene, const CurveError& curve) {
   if (curve.unit.empty()) return fmt::format("{:.2g} %", 100 * curve.error);
-  return scene.boltzmann == 1 ? fmt::format("{:.3g}", curve.error)
-                              : quantity_text(curve.error, curve.unit.c_str());
+  return scene.boltzmann == 1 || curve.unit == kPlainNumber ? fmt::format("{:.3g}", curve.error)
+                                                            : quantity_text(curve.error, curve.unit.c_str());
 }
 
 std::string json_of(const ProbeError& error) {

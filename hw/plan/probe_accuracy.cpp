@@ -22,11 +22,6 @@ constexpr int kFactorFrac = 26;
 // What an estimate may be too low by: half where a slow load rings (docs/measured/accuracy.md).
 constexpr double kTooLow = 2;
 
-std::string unit_of(const RuleProgram& text, const std::string& field) {
-  const auto at = std::ranges::find(text.declaration.particle, field, &RuleField::name);
-  return at == text.declaration.particle.end() ? "" : at->unit;
-}
-
 ProbeError error_of_field(const Scene& scene, const IntegerProgram& program, const Probe& probe) {
   ProbeError error{probe.name, {}, {}};
   if (probe.kind != Probe::Kind::field) {
@@ -52,7 +47,9 @@ ProbeError error_of_field(const Scene& scene, const IntegerProgram& program, con
   const double unit = std::ldexp(1.0, -of->frac);
   error.curves[0].error = unit * std::sqrt(static_cast<double>(scene.steps)) +
                           error.curves[0].error * unit * static_cast<double>(of->range.high);
-  error.curves[0].unit = unit_of(text, probe.field);
+  const std::vector<RuleField>& declared = text.declaration.particle;
+  const std::string& named = declared[place_of(declared, probe.field)].unit;
+  error.curves[0].unit = named.empty() ? kPlainNumber : named;
   error.why = fmt::format("the resolution of {}", probe.field);
   return error;
 }

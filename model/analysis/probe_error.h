@@ -12,6 +12,9 @@
 
 namespace cuboct {
 
+// The unit of an error that is a plain number, and no share of its curve.
+inline constexpr const char* kPlainNumber = "number";
+
 // Of a curve: the root mean square of its difference from that of doubles, over that of the latter.
 struct CurveError {
   std::string quantity;  // "stress"

@@ -85,6 +85,26 @@ TEST(Check, TellsTheMachineOfARuleOfText) {
   EXPECT_EQ(told({"check", "scenes/rules/heat.toml", "--machine"}), plain);
 }
 
+// A field without a unit: what its resolution leaves is no share of the curve.
+TEST(Check, TellsWhatAResolutionCosts) {
+  const Bench bench(false);
+  const std::string path = bench.path("dry.toml");
+  write_text(path,
+             "density = \"0.5 g/cm^3\"\npacking.pitch = \"0.5 mm\"\nbox.cells = [12, 4, 4]\n"
+             "run = { dt = \"15 s\", steps = 400, probe_every = 50 }\nreach.margin = \"auto\"\n"
+             "[[probe]]\nname = \"left\"\nkind = \"field\"\nfield = \"wet\"\n"
+             "region = { shape = \"half_space\", point = \"[2.4, 0, 0] mm\", normal = \"x\" }\n"
+             "[rule]\nreach = \"1.2 * pitch\"\nstill = true\n"
+             "particle.wet = { range = [0, 1], start = \"x.x / (20 * pitch)\", resolution = 1e-5 }\n"
+             "[[rule.round]]\nsum.flow = \"0.004 * (wet_j - wet_i)\"\nfinish.wet = \"wet + flow\"\n");
+  const Answer answer = bench.cuboct({"check", path});
+  EXPECT_EQ(answer.code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("wet within about 0.000153; the resolution of wet\n"), std::string::npos)
+      << answer.out;
+  const std::string json = bench.cuboct({"check", path, "--json"}).out;
+  EXPECT_NE(json.find("\"unit\": \"number\""), std::string::npos) << json;
+}
+
 TEST(Check, SaysWhatSetsTheLimitOfDt) {
   const auto limit = [](const std::string& scene) {
     const std::string out = Bench(false).cuboct({"check", scene, "--machine"}).out;
