@@ -13,6 +13,9 @@ namespace {
 
 __extension__ typedef __int128 Big;
 
+// Beyond any value.
+constexpr Big kNone = Big{1} << 100;
+
 struct Ends {
   Big low = 0, high = 0;
   bool holds(const Ends& o) const { return low <= o.low && o.high <= high; }
@@ -21,12 +24,23 @@ struct Ends {
 
 Ends ends_of(std::initializer_list<Big> v) { return {std::min(v), std::max(v)}; }
 
-Big power(Big n) { return Big{1} << static_cast<int>(n); }
+// A value of 64 bits times the largest of these stays a Big.
+constexpr int kMostPlaces = 63;
+
+Big power(Big n) {
+  if (n < 0 || n > kMostPlaces) throw std::runtime_error("a shift by places that there are not");
+  return Big{1} << static_cast<int>(n);
+}
+
+Big down(Big a, Big places) {
+  if (places < 0 || places > kMostPlaces) throw std::runtime_error("a shift by places that there are not");
+  return a >> static_cast<int>(places);
+}
 
 // To nearest, halves away from zero.
 Big nearest(Big a, Big shift) {
   const Big half = shift > 0 ? power(shift - 1) : 0;
-  return a < 0 ? -((-a + half) >> static_cast<int>(shift)) : (a + half) >> static_cast<int>(shift);
+  return a < 0 ? -down(-a + half, shift) : down(a + half, shift);
 }
 
 int bits_below(Big a) {  // place of the leading bit; -1 for none
@@ -46,34 +60,35 @@ struct Curve {
 
   // First argument of a bin; that of the bin behind the last is the end of the table.
   Big start(Big bin) const {
-    if (!octaves) return bin << (2 * D - index);
+    if (!octaves) return bin * power(2 * D - index);
     if (bin == 0) return 0;
     const int octave = first + static_cast<int>(bin >> bins);
     const Big mantissa = power(bins) + bin % power(bins);
-    return octave >= bins ? mantissa << (octave - bins)
-                          : (mantissa + power(bins - octave) - 1) >> (bins - octave);
+    return octave >= bins ? mantissa * power(octave - bins)
+                          : down(mantissa + power(bins - octave) - 1, bins - octave);
   }
   // The bits of the argument below the bin.
   Big fraction(Big x) const {
-    if (!octaves) return (x >> (2 * D - index - T)) % power(T);
-    const int octave = bits_below(x), down = octave - bins - T;
+    if (!octaves) return down(x, 2 * D - index - T) % power(T);
+    const int octave = bits_below(x), spare = octave - bins - T;
     if (octave < first) return 0;
-    return (down >= 0 ? x >> down : x << -down) % power(T);
+    return (spare >= 0 ? down(x, spare) : x * power(-spare)) % power(T);
   }
   Ends over(Ends argument, Ends law) const {
     if (argument.low < 0 || argument.high >= power(2 * D) || law.low < 0 ||
-        (law.high + 1) << index > static_cast<Big>(entries.size()))
+        (law.high + 1) * power(index) > static_cast<Big>(entries.size()))
       throw std::runtime_error("the lookup reaches beyond its table");
-    Ends all{power(100), -power(100)};
-    const Big count = octaves ? Big{2 * D - first} << bins : power(index);
+    const Big count = octaves ? (2 * D - first) * power(bins) : power(index);
+    if (count > power(index)) throw std::runtime_error("the table has no room for its bins");
+    Ends all{kNone, -kNone};
     for (Big n = law.low; n <= law.high; ++n)
       for (Big bin = 0; bin < count; ++bin) {
         const Big low = std::max(argument.low, start(bin)),
                   high = std::min(argument.high, start(bin + 1) - 1);
         if (low <= high)
-          add(all, entries[static_cast<size_t>((n << index) + bin)], fraction(low), fraction(high));
+          add(all, entries[static_cast<size_t>(n * power(index) + bin)], fraction(low), fraction(high));
         if (octaves && bin == 0 && low < power(first))
-          add(all, entries[static_cast<size_t>(n << index)], 0, 0);
+          add(all, entries[static_cast<size_t>(n * power(index))], 0, 0);
       }
     return all;
   }
@@ -113,7 +128,7 @@ class Checker {
  private:
   void read_partners(Words& words) {
     int partners = 0;
-    words >> partners;
+    if (!(words >> partners) || partners < 0) throw std::runtime_error("no number of partners");
     partners_ = partners;
   }
   void begin_tables() {
@@ -134,6 +149,9 @@ class Checker {
         w >> c.T;
     c.octaves = shape == "octaves";
     if (number != curves_.size()) throw std::runtime_error("this is not the next table");
+    if (std::min({c.D, c.index, c.bins, c.first, c.T}) < 0 || 2 * c.D > 62 || c.first > 2 * c.D ||
+        c.index + c.T > 62)
+      throw std::runtime_error("no widths of a table");
     curves_.push_back(c);
   }
   void read_entry(Words& words) {
@@ -230,7 +248,7 @@ class Checker {
     if (op == "neg") return {-a.high, -a.low};
     if (op == "shl") return {a.low * power(shift), a.high * power(shift)};
     if (op == "round") return rounded(a, shift);
-    if (op == "floor") return {a.low >> static_cast<int>(shift), a.high >> static_cast<int>(shift)};
+    if (op == "floor") return {down(a.low, shift), down(a.high, shift)};
     if (op == "lookup") return curves_.at(static_cast<size_t>(with["table"])).over(a, b);
     if (op == "min") return {std::min(a.low, b.low), std::min(a.high, b.high)};
     if (op == "max") return {std::max(a.low, b.low), std::max(a.high, b.high)};
@@ -241,8 +259,9 @@ class Checker {
   }
 
   static Ends aligned(Ends a, Big place, Big step) {
+    if (step < 1) throw std::runtime_error("no step of an alignment");
     const auto moved = [&](Big v) { return place - bits_below(v) / step * step; };
-    const auto at = [&](Big v, Big by) { return by >= 0 ? v * power(by) : v >> static_cast<int>(-by); };
+    const auto at = [&](Big v, Big by) { return by >= 0 ? v * power(by) : down(v, -by); };
     if (a.high <= 0) return {};
     if (a.low > 0 && moved(a.low) == moved(a.high))
       return {at(a.low, moved(a.low)), at(a.high, moved(a.low))};
@@ -251,8 +270,10 @@ class Checker {
 
   Ends other_value(const std::string& op, const std::vector<size_t>& in, Ends a, Ends b, Big shift,
                    Big width) const {
-    const Ends wrapped{-power(width - 1), power(width - 1) - 1};
-    if (op == "check") return wrapped.holds(a) ? a : wrapped;
+    if (op == "check") {
+      const Ends wrapped{-power(width - 1), power(width - 1) - 1};
+      return wrapped.holds(a) ? a : wrapped;
+    }
     if (op == "align") return aligned(a, shift, width);
     if (op == "shift") {
       const auto at = [](Big v, Big by) { return by >= 0 ? v * power(by) : nearest(v, -by); };

@@ -18,7 +18,7 @@
 namespace cuboct {
 namespace {
 
-constexpr size_t kBuffer = size_t{1} << 17;  // words: 1 MiB
+constexpr uint64_t kBuffer = uint64_t{1} << 17;  // words: 1 MiB
 
 InputError cannot(const char* what, const std::string& path, int error) {
   return InputError(fmt::format("cannot {} {}: {}", what, path, std::strerror(error)));
@@ -104,8 +104,8 @@ WordReader::WordReader(const std::string& path) : path_(path) {
 WordReader::~WordReader() { std::fclose(file_); }
 
 void WordReader::fill() {
-  buffer_.resize(kBuffer);
-  buffer_.resize(std::fread(buffer_.data(), sizeof(uint64_t), kBuffer, file_));
+  buffer_.resize(std::min(kBuffer, size_));
+  buffer_.resize(std::fread(buffer_.data(), sizeof(uint64_t), buffer_.size(), file_));
   next_ = 0;
   if (buffer_.empty())
     throw InputError(fmt::format("{} is damaged: it ends after {} of its words", path_, read_));

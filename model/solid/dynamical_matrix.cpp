@@ -169,8 +169,9 @@ double largest_frequency(const PairLaw& law, double mass, double pitch, double t
             Vec3 at = c.at;
             at[axis] += sign * step;
             const double value = wave_stiffness(bonds, reciprocal * at)[2];
-            // Above rounding, or the search could wander on a flat top.
-            if (value > c.value * (1 + tolerance)) {
+            // Above rounding, or the search could wander on a flat top; it lies below 0 where no wave comes
+            // back.
+            if (value > c.value + tolerance * std::abs(c.value)) {
               c = {value, at};
               moved = true;
             }

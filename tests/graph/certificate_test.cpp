@@ -139,6 +139,11 @@ TEST(Certificate, IsRefusedAtTheLineThatWasChanged) {
             line_with("write velocity"));
   EXPECT_EQ(refused_with(" check 2 3 width 12", " max 2 2"), checked);
   EXPECT_EQ(refused_with(" width 12", " width 13"), checked);
+  for (const char* places : {"-1", "64", "1000000000000"}) {
+    EXPECT_EQ(refused_with(" shl 2 shift 1", std::string(" shl 2 shift ") + places), shl);
+    EXPECT_EQ(refused_with(" shift 4 ", std::string(" shift ") + places + " "), product);
+    EXPECT_EQ(refused_with(" width 12", std::string(" width ") + places), checked);
+  }
 }
 
 }  // namespace

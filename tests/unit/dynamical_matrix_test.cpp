@@ -125,6 +125,16 @@ TEST(Phonons, LargestFrequencyIsZeroWhereNothingIsRestored) {
   EXPECT_EQ(largest_frequency(*push, 1, 4), 0);  // no neighbour inside the cutoff
 }
 
+// Neighbours that push, and harder the further they are apart: a displacement grows, along them and across.
+TEST(Phonons, LargestFrequencyIsZeroWhereNoWaveComesBack) {
+  const auto growing = spline_law({0.5, 1, 1.1, 1.2}, {0.5, 1, 2, 0}, Interpolation::monotone_cubic, 0.4);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 q = 2 * pi / sqrt2 * Vec3::Unit(axis);
+    ASSERT_LT(squared_frequencies(*growing, 1, 1, q)[2], 0);
+  }
+  EXPECT_EQ(largest_frequency(*growing, 1, 1), 0);
+}
+
 // Springs k at rest: C11 = sqrt(2) k/pitch, C12 = C44 = C11/2 (12 bonds along <110>, each 1/(2 V) k pitch^2
 // e_i e_j e_k e_l: 8 have e_x^4 = 1/4, 4 have e_x^2 e_y^2 = 1/4).
 TEST(ElasticConstants, OfNearestNeighbourSprings) {
