@@ -48,8 +48,9 @@ class PaddedArray {
   T* data() { return data_; }
   const T* data() const { return data_; }
   size_t size() const { return size_; }
-  T& operator[](size_t k) { return data_[k]; }
-  const T& operator[](size_t k) const { return data_[k]; }
+  // The lead's places lie below 0, modulo 2^64.
+  T& operator[](size_t k) { return data_[static_cast<ptrdiff_t>(k)]; }
+  const T& operator[](size_t k) const { return data_[static_cast<ptrdiff_t>(k)]; }
 
  private:
   static constexpr size_t kLine = 64;

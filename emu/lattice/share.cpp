@@ -190,6 +190,8 @@ void LatticeEngine::Impl::redistribute() {
   particles_ = {};
   particles_.shift = old.shift;
   const Index old_index = std::move(index_);
+  // Behind them are ghosts, which have no residues: all of one that is now this rank's comes from its rank.
+  const uint32_t old_stored = stored_;
   make_room(core_room + rim_room, static_cast<uint32_t>(ghost_count));
   cell_ = PaddedArray<uint32_t>(snapshot_.room);
   particles_.cell = cell_.data();
@@ -199,7 +201,7 @@ void LatticeEngine::Impl::redistribute() {
       index_.by_id[id] = begin;
       particles_.id[begin] = id;
       cell_[begin] = members_.cells()[id];
-      if (const uint32_t p = old_index(id); p != kNoParticle && old.id[p] == id) {
+      if (const uint32_t p = old_index(id); p < old_stored && old.id[p] == id) {
         particles_.type[begin] = old.type[p];
         for (int a = 0; a < 3; ++a) {
           particles_.x[a][begin] = old.x[a][p];

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "model/base/guarded_reader.h"
+#include "model/base/sanitized.h"
 
 namespace cuboct {
 namespace {
@@ -23,9 +24,7 @@ void take_limits(const ReaderLimits& limits) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.seconds);
   alarm(static_cast<unsigned>(10 * limits.seconds));
-#ifndef __SANITIZE_ADDRESS__  // which reserves 20 TB of addresses
-  limit(RLIMIT_AS, limits.megabytes << 20);
-#endif
+  if (!kSanitized) limit(RLIMIT_AS, limits.megabytes << 20);
 }
 
 }  // namespace cuboct

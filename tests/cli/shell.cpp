@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "tests/cli/shell.h"
+#include "model/base/sanitized.h"
 
 #include <fcntl.h>
 #include <sched.h>
@@ -72,7 +73,7 @@ void obey(const Limits& limits) {
     const rlimit both{most, most};
     if (most > 0) setrlimit(static_cast<__rlimit_resource>(resource), &both);
   };
-  limit(RLIMIT_AS, limits.memory);
+  if (!kSanitized) limit(RLIMIT_AS, limits.memory);
   limit(RLIMIT_CPU, limits.cpu_seconds);
   if (limits.cores == 0) return;
   cpu_set_t have, set;

@@ -16,6 +16,7 @@
 
 #include "hw/program/command_line.h"
 #include "hw/program/options.h"
+#include "model/base/sanitized.h"
 #include "tests/verify/judge.h"
 
 namespace {
@@ -52,7 +53,7 @@ void judge_one(const Judge& judge, const std::shared_ptr<const emu::Library>& li
                rlim_t seconds, int file) {
   const rlimit time{seconds, seconds + 1}, memory{kMemory, kMemory}, no_core{0, 0};
   setrlimit(RLIMIT_CPU, &time);
-  setrlimit(RLIMIT_AS, &memory);
+  if (!kSanitized) setrlimit(RLIMIT_AS, &memory);
   setrlimit(RLIMIT_CORE, &no_core);
   if (std::freopen("/dev/null", "w", stderr) == nullptr || std::freopen("/dev/null", "w", stdout) == nullptr)
     std::abort();  // of Verilator's own words
