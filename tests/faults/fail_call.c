@@ -4,7 +4,7 @@
 //   CUBOCT_FAIL_AT    which of them, from 1; 0: none. Of readings of the wall clock all from there on: a day ahead, a day behind, ...
 //   CUBOCT_FAIL_IN    the program, by the name of its file; its children of other names are spared
 //   CUBOCT_FAIL_RANK  of ranks: in this one alone
-//   CUBOCT_FAIL_KILLS set: the program is killed there instead
+//   CUBOCT_FAIL_KILLS set: the program is killed there instead; or, by its number, another process, and the call goes on
 //   CUBOCT_FAIL_MARK  file that the failing call makes: the function's name, and from where in the program it was called, or 0
 #define _GNU_SOURCE
 #include <dirent.h>
@@ -36,7 +36,7 @@ static long at;
 static atomic_long count;
 static atomic_int armed;
 static const char* mark;
-static int kills;
+static const char* kills;
 
 static void leave_mark(const char* function, const void* caller) {
   if (mark == NULL) return;
@@ -54,7 +54,10 @@ static int fails_at(enum Group group, const char* function, int error, const voi
   if (group != wanted || !atomic_load_explicit(&armed, memory_order_relaxed)) return 0;
   if (atomic_fetch_add(&count, 1) + 1 != at) return 0;
   leave_mark(function, caller);
-  if (kills) syscall(SYS_kill, getpid(), SIGKILL);
+  if (kills != NULL) {
+    syscall(SYS_kill, *kills == 0 ? getpid() : (pid_t)atol(kills), SIGKILL);
+    return 0;
+  }
   errno = error;
   return 1;
 }
@@ -70,7 +73,7 @@ static int wrapped_main(int argc, char** argv, char** environment) {
   const char *const rank = getenv("CUBOCT_FAIL_RANK"), *const here = getenv("OMPI_COMM_WORLD_RANK");
   const int mine = rank == NULL || (here != NULL && strcmp(rank, here) == 0);
   mark = getenv("CUBOCT_FAIL_MARK");
-  kills = getenv("CUBOCT_FAIL_KILLS") != NULL;
+  kills = getenv("CUBOCT_FAIL_KILLS");
   if (call != NULL && number != NULL && mine && (in == NULL || strcmp(in, program_invocation_short_name) == 0)) {
     for (int k = 0; k < None; ++k)
       if (strcmp(call, kNames[k]) == 0) wanted = (enum Group)k;

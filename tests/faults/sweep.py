@@ -5,7 +5,9 @@ nothing is left behind. usage: sweep.py BIN FAIL_CALL.so [--engines E,...] [--ca
 
 A run is new, or goes on from a checkpoint. The n-th call fails for n = 1, 2, 3, ... until the run makes fewer; beyond
 --most the step grows by SHARE of n. Where the engine is a program of its own, or ranks, its calls fail too. Behind a call,
-":kill": the engine's program is killed there instead. The wall clock ("clock") jumps from the first reading on, which may change nothing. --gpu has the engine on the host, --mpi FAIL_MPI.so, --board cuboct-board-sim."""
+":kill": the engine's program is killed there instead. The wall clock ("clock") jumps from the first reading on, which may change nothing.
+At the n-th reading of the host the board is gone ("unplug"); another one stands there when the run is tried again. --gpu has the
+engine on the host, --mpi FAIL_MPI.so, --board cuboct-board-sim."""
 import argparse
 import bisect
 import collections
@@ -78,18 +80,21 @@ class Runs:
         return told - time.time() > 80000
 
     def start_board(self):
-        """The words that reach a board of this scene's machine, Verilated."""
+        """A board of this scene's machine, Verilated, at this run's port."""
         project, port, cache = self.folder / "project", self.folder / "port", {"XDG_CACHE_HOME": str(self.given.cache)} if self.given.cache else {}
-        emit = ["emit", "scene.toml", "--arch", ARCH, "--board", "icebreaker", "--baud", "3000000", "--unchecked", "--out", project]
-        done = subprocess.run([self.bin / "cuboct", *emit], cwd=self.folder, capture_output=True)
-        if done.returncode != 0:
-            raise SystemExit(done.stderr.decode())
+        if not project.exists():
+            emit = ["emit", "scene.toml", "--arch", ARCH, "--board", "icebreaker", "--baud", "3000000", "--unchecked", "--out", project]
+            done = subprocess.run([self.bin / "cuboct", *emit], cwd=self.folder, capture_output=True)
+            if done.returncode != 0:
+                raise SystemExit(done.stderr.decode())
         self.board = subprocess.Popen([self.given.board, project], stdout=open(port, "wb"), env={**os.environ, **cache})
         while not port.read_bytes().endswith(b"\n"):
             if self.board.poll() is not None:
                 raise SystemExit("cuboct-board-sim ended")
             time.sleep(0.05)
-        return ["--arch", str(ARCH), "--baud", "3000000", "--port", port.read_text().strip()]
+        device = self.folder / "board"
+        device.unlink(missing_ok=True)
+        device.symlink_to(port.read_text().strip())
 
     def end(self):
         if self.board:
@@ -116,7 +121,8 @@ class Sweep:
         self.runs, self.engine = runs, engine
         self.words = RUN + WORDS.get(engine, ["--engine", engine]) + ([] if engine in WITHOUT else CHECKPOINTS)
         if engine == "fpga":
-            self.words += runs.start_board()
+            runs.start_board()
+            self.words += ["--arch", str(ARCH), "--baud", "3000000", "--port", str(runs.folder / "board")]
         self.wrong, self.ends, self.said, self.functions = [], collections.Counter(), {}, {}
         runs.clear()
         whole = runs.run(self.words)
@@ -130,7 +136,7 @@ class Sweep:
         cut = self.runs.folder / f"cut-{self.engine}"
         for at in range(1, 0 if self.engine in WITHOUT else 20):
             self.runs.clear()
-            self.runs.run(self.words, call="rename", at=at, kills=1)
+            self.runs.run(self.words, call="rename", at=at, kills="")
             if not (self.runs.out / "checkpoint").exists():
                 continue
             time.sleep(0.5 if self.engine in PROGRAMS else 0)  # its program ends, too
@@ -187,15 +193,21 @@ class Sweep:
         if start == "resumed":
             shutil.copytree(self.cut, runs.out)
         before = set(runs.left())
+        fault = {"call": "read" if call == "unplug" else call.removesuffix(":kill"), "at": at, "in": program}
+        if call.endswith(":kill"):
+            fault["kills"] = ""
+        elif call == "unplug":
+            fault["kills"] = runs.board.pid
+        if rank is not None:
+            fault["rank"] = rank
         try:
-            words = self.words + (["--resume"] if start == "resumed" else [])
-            fault = {"call": call.removesuffix(":kill"), "at": at, "in": program}
-            if call.endswith(":kill"):
-                fault["kills"] = 1
-            if rank is not None:
-                fault["rank"] = rank
-            done = runs.run(words, **fault)
+            done = runs.run(self.words + (["--resume"] if start == "resumed" else []), **fault)
         except subprocess.TimeoutExpired:
+            done = None
+        if call == "unplug" and runs.mark.exists():
+            runs.board.wait()
+            runs.start_board()
+        if done is None:
             self.wrong.append(f"{self.engine} {start} {call} {program} {rank or ''} {at}: does not end")
             return True
         if not runs.mark.exists() and call != "clock":
@@ -218,7 +230,7 @@ class Sweep:
     def places(self, call):
         """Where it fails: the command, and the engine's program or each of two ranks."""
         program = PROGRAMS.get(self.engine)
-        here = [] if call in ("mpi", "device") or call.endswith(":kill") else [("cuboct", None)]
+        here = [] if call in ("mpi", "device", "unplug") or call.endswith(":kill") else [("cuboct", None)]
         return here + ([] if program is None else [(program, rank) for rank in ((0, 1) if self.engine == "ranks" else (None,))])
 
 
