@@ -40,8 +40,8 @@ Machine<Policy>::Machine(const Options& options, const Setup& setup, const Energ
     slab.rank.set(slab.stream, of.rank);
     for (auto* array : {&slab.count, &slab.first, &slab.taken, &slab.occupancy}) array->resize(of.ranks);
     slab.notes.resize(8);
-    slab.control.set(slab.stream, {{0, kNever, kNever, kNever, kNever,
-                                    kNever}});  // the first hash asks before the first step
+    // The first hash asks before the first step.
+    slab.control.set(slab.stream, {{0, kNever, kNever, kNever, kNever, kNever}});
     slab.hashes.resize(kLongest + 1);
     slab.energy_node.set(slab.stream, energies.node);
     slab.energy_strength.set(slab.stream, energies.strength);

@@ -149,8 +149,8 @@ class Checker {
         w >> c.T;
     c.octaves = shape == "octaves";
     if (number != curves_.size()) throw std::runtime_error("this is not the next table");
-    if (std::min({c.D, c.index, c.bins, c.first, c.T}) < 0 || 2 * c.D > 62 || c.first > 2 * c.D ||
-        c.index + c.T > 62)
+    if (std::min({c.D, c.index, c.bins, c.first, c.T}) < 0 || c.D > 31 || c.first > 2 * c.D ||
+        std::max(c.index, c.T) > 62 || c.index + c.T > 62)
       throw std::runtime_error("no widths of a table");
     curves_.push_back(c);
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "tests/cli/shell.h"
-#include "model/base/sanitized.h"
 
 #include <fcntl.h>
 #include <sched.h>
@@ -17,6 +16,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+
+#include "model/base/sanitized.h"
 
 namespace cuboct::test {
 

@@ -46,7 +46,8 @@ void take_words(Bytes input) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  // Making the options of all commands takes 15 times as long as reading words for one of them.
+  // Options of the other commands would be made for nothing: without them twice as many inputs are read a
+  // second.
   const auto named = std::ranges::find(kOwn, words.size() > 1 ? words[1] : "", &OwnCommand::name);
   const std::span<const OwnCommand> own = named == std::end(kOwn) ? kOwn : std::span(named, 1);
   const int code = front(static_cast<int>(words.size()), argv.data(), own);
